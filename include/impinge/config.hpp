@@ -1,0 +1,124 @@
+#pragma once
+// A case: typed, validated, immutable after it is read. SI units; lengths that the method scales are in dp.
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace impinge {
+
+enum class GeometryType { jet, tank, periodic_box };
+enum class KernelType { non_singular, singular };
+enum class JetStart { impact, steady };
+enum class Partitioner { metis, ptscotch };
+
+/// Every key of a case file. The table in config.cpp holds each key's unit, range and doc line (impinge --describe).
+struct Config {
+  std::string name;  ///< default: the case file's stem
+  GeometryType geometry = GeometryType::jet;
+  int dimension = 2;
+
+  struct {
+    double density = 1000.0;  ///< [kg/m^3]
+    double viscosity = 0.0;   ///< kinematic [m^2/s]
+    std::array<double, 3> gravity{0.0, 0.0, 0.0};
+  } fluid;
+
+  struct {
+    double spacing = 0.0;  ///< dp [m], required
+  } particles;
+
+  struct {
+    KernelType type = KernelType::non_singular;
+    double radius = 2.1;             ///< r_e of number density, gradient and divergence [dp]
+    double laplacian_radius = 4.01;  ///< r_e of the Laplacian [dp]
+  } kernel;
+
+  struct {
+    double gamma = 0.01;          ///< weight of the density term in the PPE source
+    double tolerance = 1e-6;      ///< relative residual of the PPE solve
+    bool clamp_negative = true;   ///< set negative pressures to zero after the solve
+  } pressure;
+
+  struct {
+    double surface_density = 0.8;    ///< n/n0 below which a particle is free surface
+    double interior_density = 0.97;  ///< n/n0 above which it is not
+    double asymmetry = 0.9;          ///< between the two: surface if |F| > asymmetry |F|0
+  } free_surface;
+
+  struct {
+    double distance = 0.5;     ///< [dp]; 0 switches collisions off
+    double restitution = 0.2;  ///< [-]
+  } collision;
+
+  struct {
+    double end = 0.0;        ///< [s], required
+    double dt = 0.0;         ///< largest step [s], required
+    double cfl = 0.2;        ///< dt <= cfl dp / |u|max
+    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; 0: 20 reference speeds
+  } time;
+
+  struct {
+    double width = 0.0;           ///< H [m]
+    double speed = 0.0;           ///< U [m/s]
+    double angle = 0.0;           ///< between jet and plate [deg]
+    double inlet_distance = 3.5;  ///< from the plate along the axis [H]
+    JetStart start = JetStart::impact;
+  } jet;
+
+  struct {
+    double begin = 0.0;  ///< [m] from the stagnation point; default from the analytic jet
+    double end = 0.0;    ///< [m]
+  } plate;
+
+  struct {
+    std::array<double, 3> size{0.0, 0.0, 0.0};  ///< inner lengths; the vertical one is the walls' height [m]
+    double fluid_height = 0.0;                  ///< [m]
+  } tank;
+
+  struct {
+    std::array<double, 3> size{0.0, 0.0, 0.0};  ///< periods [m]
+    double shear_speed = 0.0;                   ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
+  } periodic_box;
+
+  struct {
+    std::string directory;       ///< default: output/<name>
+    double interval = 0.0;       ///< time between snapshots [s]; 0: first and last only
+    double average_start = 0.0;  ///< start of the wall-pressure average [s]; default: 0.8 end
+  } output;
+
+  struct {
+    Partitioner partitioner = Partitioner::metis;
+    double imbalance = 1.1;  ///< repartition when max/mean of the owned particles passes it
+  } parallel;
+
+  std::string resolved_text;  ///< the whole case as one TOML text, every key with its value
+};
+
+/// Mistakes in the input, all of them, one message each ("file:line: key = value: what is wrong (range)"). Exit 2.
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(std::vector<std::string> mistakes);
+  const std::vector<std::string>& mistakes() const { return mistakes_; }
+
+ private:
+  std::vector<std::string> mistakes_;
+};
+
+/// A file's name and its text.
+using NamedText = std::pair<std::string, std::string>;
+
+/// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
+/// Reads the disk; not collective. Throws InputError (missing file, include cycle).
+std::vector<NamedText> load_case_files(const std::string& path);
+
+/// Parses and validates; later files are defaults for earlier ones, `settings` ("key=value") override all.
+/// Touches no file. Throws InputError with every mistake.
+Config parse_case(const std::vector<NamedText>& files, const std::vector<std::string>& settings = {});
+
+/// Every key with type, unit, default, range and doc line, as a text for the terminal.
+std::string describe_keys();
+
+}  // namespace impinge

@@ -1,0 +1,48 @@
+#pragma once
+// The particles of one rank, as a structure of arrays: [owned | halo].
+
+#include <cstdint>
+#include <vector>
+
+#include "impinge/types.hpp"
+
+namespace impinge {
+
+/// What travels with a particle that changes its rank.
+template <int Dim>
+struct ParticleRecord {
+  Vec<Dim> position;        ///< [m]
+  Vec<Dim> velocity;        ///< [m/s]
+  double pressure;          ///< [Pa]
+  double pressure_impulse;  ///< [Pa s]
+  std::int64_t id;
+  ParticleType type;
+};
+
+/// Structure of arrays. Entries [0, owned) belong to this rank; entries [owned, size()) are the halo: copies of
+/// other ranks' particles (or periodic images) within reach. All arrays have length size().
+template <int Dim>
+struct Particles {
+  int owned = 0;
+  std::vector<Vec<Dim>> position;          ///< [m]
+  std::vector<Vec<Dim>> velocity;          ///< [m/s]
+  std::vector<double> pressure;            ///< [Pa]
+  std::vector<double> pressure_impulse;    ///< integral of p dt over the averaging window [Pa s]; owned entries
+  std::vector<double> number_density;      ///< n [-]; owned entries are valid
+  std::vector<std::int64_t> id;            ///< never used twice in a run
+  std::vector<ParticleType> type;
+  std::vector<std::uint8_t> free_surface;  ///< 1 where p = 0 is imposed by the free-surface criterion
+
+  int size() const { return static_cast<int>(position.size()); }
+
+  /// Sets the length of every array; new entries are zero.
+  void resize(int size);
+
+  /// Appends an owned particle. Only while there is no halo.
+  void append(const ParticleRecord<Dim>& record);
+
+  ParticleRecord<Dim> record(int i) const;
+  void set_record(int i, const ParticleRecord<Dim>& record);
+};
+
+}  // namespace impinge
