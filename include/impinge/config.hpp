@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "impinge/kernel.hpp"
+
 namespace impinge {
 
 enum class GeometryType { jet, tank, periodic_box };
-enum class KernelType { non_singular, singular };
 enum class JetStart { impact, steady };
 enum class Partitioner { metis, ptscotch };
 

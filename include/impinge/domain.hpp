@@ -1,0 +1,84 @@
+#pragma once
+// Who owns which particle: background cells, their partition, migration, and the halo. No physics.
+
+#include <span>
+#include <vector>
+
+#include "impinge/cell_grid.hpp"
+#include "impinge/config.hpp"
+#include "impinge/parallel.hpp"
+#include "impinge/particles.hpp"
+
+namespace impinge {
+
+/// Decomposition of the particles over the ranks by background cells whose edge is at least the largest effective
+/// radius. Arrays of global length exist on the cell grid only.
+template <int Dim>
+class Domain {
+ public:
+  /// How many parts a background cell is cut into along each axis for sorting and searching.
+  static constexpr int cell_parts = 2;
+
+  /// `reach`: largest effective radius [m]. Every rank starts with no cell; call partition before migrate. Collective.
+  Domain(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
+         Partitioner partitioner);
+
+  MPI_Comm comm() const { return comm_; }
+
+  /// The cells in whose order owned particles are sorted.
+  const CellGrid<Dim>& sorting_cells() const { return fine_; }
+
+  /// Assigns every cell to a rank so that the work of the particles, wherever they are now, is balanced: k-way on the
+  /// graph of occupied cells (METIS on rank 0, or PTScotch on all); empty cells follow the nearest occupied one.
+  /// Reads owned positions and types. Collective.
+  void partition(const Particles<Dim>& particles);
+
+  /// Largest over mean work of the ranks. Collective.
+  double imbalance(const Particles<Dim>& particles) const;
+
+  /// The imbalance right after the last partition.
+  double achieved_imbalance() const { return achieved_imbalance_; }
+
+  /// True if the position lies in a cell of this rank.
+  bool owns(const Vec<Dim>& position) const;
+
+  /// Drops the halo, moves every owned particle to the rank that owns its cell, and sorts along the cells and, within a
+  /// cell, by id. Number density and free surface are not carried. Returns how many of this rank's particles were
+  /// dropped because they are outside the background grid. Collective.
+  std::int64_t migrate(Particles<Dim>& particles);
+
+  /// Appends the halo, with all that travels but the pressure impulse, and numbers the rows. Needs sorted owned
+  /// particles. Collective.
+  void build_halo(Particles<Dim>& particles);
+
+  const Halo& halo() const { return halo_; }
+
+  /// Copies the positions of owned particles to their copies in the halo, periodic images shifted. Collective.
+  void refresh_positions(Particles<Dim>& particles) const;
+
+  /// Global row of every particle, owned and halo: consecutive on each rank, in the order of the ranks.
+  std::span<const PetscInt> rows() const { return rows_; }
+
+ private:
+  struct Target {
+    int rank;
+    Vec<Dim> shift;
+  };
+
+  void find_halo_targets();
+  void sort_along_cells(Particles<Dim>& particles) const;
+
+  MPI_Comm comm_;
+  CellGrid<Dim> cells_;
+  CellGrid<Dim> fine_;
+  Partitioner partitioner_;
+  std::vector<int> owner_;                // rank of each cell
+  std::vector<int> target_start_;         // per cell: range in targets_
+  std::vector<Target> targets_;           // who sees the particles of a cell of this rank
+  double achieved_imbalance_ = 1.0;
+  Halo halo_;
+  std::vector<Vec<Dim>> halo_shift_;  // per particle sent
+  std::vector<PetscInt> rows_;
+};
+
+}  // namespace impinge

@@ -1,0 +1,53 @@
+#pragma once
+// Where particles are at the start, where they enter and where they leave.
+
+#include <functional>
+#include <memory>
+
+#include "impinge/config.hpp"
+#include "impinge/particles.hpp"
+
+namespace impinge {
+
+/// Fluid particles that passed the open boundaries on this rank in one step.
+struct BoundaryFlow {
+  std::int64_t entered = 0;
+  std::int64_t left = 0;
+};
+
+/// The scene of a case. Walls: the surface of a wall lies half a spacing in front of its row of wall particles; ghost
+/// rows stand behind it.
+template <int Dim>
+class Geometry {
+ public:
+  virtual ~Geometry() = default;
+
+  /// The region that particles may occupy [m]; one outside it is lost.
+  virtual Box<Dim> bounds() const = 0;
+
+  virtual std::array<bool, Dim> periodic() const { return {}; }
+
+  /// Appends this rank's share of the initial particles, anywhere in space; the shares of all ranks make the whole, the
+  /// same for every number of ranks.
+  virtual void fill(int rank, int ranks, Particles<Dim>& particles) const = 0;
+
+  /// Velocity of the inlet buffer [m/s].
+  virtual Vec<Dim> inlet_velocity() const { return {}; }
+
+  /// Lets inlet particles that crossed the inlet plane become fluid, removes fluid past the outlets, and adds the rows
+  /// that the inlet needs after a step of `dt` [s]; a new particle is added where `owns` says its position is this
+  /// rank's. Particles have no halo. Not collective.
+  virtual BoundaryFlow move_boundaries(double /*dt*/, Particles<Dim>& /*particles*/,
+                                       const std::function<bool(const Vec<Dim>&)>& /*owns*/) {
+    return {};
+  }
+
+  /// True for a wall particle of the plate or floor, whose force the history gives.
+  virtual bool on_floor(const Vec<Dim>& /*position*/) const { return false; }
+};
+
+/// The geometry that the case names. Throws InputError where it does not exist in Dim dimensions.
+template <int Dim>
+std::unique_ptr<Geometry<Dim>> make_geometry(const Config& config);
+
+}  // namespace impinge

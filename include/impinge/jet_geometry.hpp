@@ -1,0 +1,50 @@
+#pragma once
+// A plane jet that enters through a rigid inlet buffer and hits a plate.
+
+#include "impinge/analytic_jet.hpp"
+#include "impinge/geometry.hpp"
+
+namespace impinge {
+
+/// Frame: plate surface y = 0, stagnation point of the analytic jet at the origin, incoming velocity
+/// U (cos a, -sin a). Along the jet, s runs downstream from the inlet plane and t across, from its lower edge.
+class JetGeometry final : public Geometry<2> {
+ public:
+  explicit JetGeometry(const Config& config);
+
+  Box<2> bounds() const override { return bounds_; }
+  void fill(int rank, int ranks, Particles<2>& particles) const override;
+  Vec<2> inlet_velocity() const override { return speed_ * along_; }
+  BoundaryFlow move_boundaries(double dt, Particles<2>& particles,
+                               const std::function<bool(const Vec<2>&)>& owns) override;
+  bool on_floor(const Vec<2>& position) const override;
+
+ private:
+  Vec<2> at(double s, double t) const { return inlet_corner_ + s * along_ + t * across_; }
+  double distance_past_inlet(const Vec<2>& position) const { return dot(position - inlet_corner_, along_); }
+  bool past_outlet(const Vec<2>& position) const;
+  ParticleRecord<2> steady_fluid(const Vec<2>& position, std::int64_t id) const;
+
+  AnalyticJet jet_;
+  JetStart start_;
+  double spacing_;
+  double speed_;
+  Vec<2> along_;         // unit vector of the incoming flow
+  Vec<2> across_;        // unit vector from the lower to the upper edge of the jet
+  Vec<2> inlet_corner_;  // lower edge of the inlet plane
+  int particles_per_row_;
+  int buffer_rows_;
+  double plate_begin_;
+  double plate_end_;
+  Box<2> bounds_;
+  double steady_seam_;  // height where a steady start changes from the plate's lattice to the jet's [m]
+
+  // Initial particles are numbered block by block: walls, inlet buffer, jet column, steady film.
+  std::int64_t wall_columns_;
+  std::int64_t column_rows_;
+  std::int64_t film_rows_;
+  double last_row_;          // s of the hindmost buffer row [m]
+  std::int64_t next_id_;
+};
+
+}  // namespace impinge

@@ -1,0 +1,40 @@
+#pragma once
+// The kernels of the paper and their sums on the full lattice.
+
+namespace impinge {
+
+/// non_singular: Zhang & Wan (paper eq. 3); singular: Koshizuka & Oka (paper eq. 9).
+enum class KernelType { non_singular, singular };
+
+/// W(r) = r_e/(0.85 r + 0.15 r_e) - 1 for r < r_e, else 0 (paper eq. 3). r and r_e in the same unit.
+struct NonSingularKernel {
+  static double weight(double r, double effective_radius) {
+    return r < effective_radius ? effective_radius / (0.85 * r + 0.15 * effective_radius) - 1.0 : 0.0;
+  }
+};
+
+/// W(r) = r_e/r - 1 for 0 < r < r_e, else 0 (paper eq. 9). r and r_e in the same unit; infinite at r = 0.
+struct SingularKernel {
+  static double weight(double r, double effective_radius) {
+    return r < effective_radius ? effective_radius / r - 1.0 : 0.0;
+  }
+};
+
+/// Calls `use` with an object of the kernel's type, so that a loop over pairs is compiled for each kernel.
+template <class Use>
+decltype(auto) with_kernel(KernelType type, Use&& use) {
+  return type == KernelType::singular ? use(SingularKernel{}) : use(NonSingularKernel{});
+}
+
+/// Sums over the neighbours of a particle on the full square or cubic lattice of spacing 1.
+struct LatticeSums {
+  double number_density;     ///< n0 = sum W [-]
+  double lambda;             ///< sum W r^2 / sum W [dp^2] (paper eq. 7)
+  double surface_asymmetry;  ///< |F|0 = Dim/n0 |sum (r_i - r_j)/r_ij W| of a particle on a flat surface [-]
+};
+
+/// The lattice sums for an effective radius in dp.
+template <int Dim>
+LatticeSums lattice_sums(KernelType type, double effective_radius);
+
+}  // namespace impinge

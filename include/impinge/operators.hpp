@@ -1,0 +1,43 @@
+#pragma once
+// The MPS operators: plain loops over the pair lists. They know neither MPI nor PETSc. Owned particles first, then the
+// halo, in every array; results are written for owned particles only, and are zero where the row is empty.
+
+#include <cstdint>
+#include <span>
+
+#include "impinge/neighbours.hpp"
+#include "impinge/types.hpp"
+
+namespace impinge {
+
+/// Particle number density n_i = sum_{j != i} W(r_ij) [-] (Koshizuka & Oka 1996).
+void number_density(const PairList& near, std::span<double> density);
+
+/// |F_i| with F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-]: large where neighbours are on one side only (Zhang & Wan 2012).
+template <int Dim>
+double asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i);
+
+/// Divergence Dim/n0 sum (u_j - u_i).r_ij W / r_ij^2 [1/s] (paper eq. 5).
+template <int Dim>
+double divergence(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
+                  double n0, int i);
+
+/// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
+/// carry no pressure and are left out.
+template <int Dim>
+Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
+                           std::span<const ParticleType> type, double n0, int i);
+
+/// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
+/// `factor` = 2 Dim/(n0 lambda) [1/m^2].
+template <int Dim>
+Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> velocity, double factor, int i);
+
+/// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour nearer than
+/// `distance` [m] that approaches, the pair's normal relative velocity becomes -restitution times itself; fluid
+/// partners share the change equally, so momentum is conserved, walls and inlet do not yield.
+template <int Dim>
+Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
+                   std::span<const ParticleType> type, double distance, double restitution, int i);
+
+}  // namespace impinge

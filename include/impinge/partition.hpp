@@ -1,0 +1,26 @@
+#pragma once
+// Graph partitioning libraries.
+
+#include <mpi.h>
+
+#include <vector>
+
+#include "impinge/config.hpp"
+
+namespace impinge {
+
+/// A weighted undirected graph in compressed rows, the same on every rank.
+struct CellGraph {
+  std::vector<int> start{0};
+  std::vector<int> neighbour;
+  std::vector<int> vertex_weight;
+  std::vector<int> edge_weight;
+
+  int size() const { return static_cast<int>(vertex_weight.size()); }
+};
+
+/// Part of every vertex, one part per rank of `comm`, with balanced vertex weights and a small cut; ranks beyond the
+/// number of vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc). Collective.
+std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, Partitioner partitioner);
+
+}  // namespace impinge

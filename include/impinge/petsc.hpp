@@ -1,0 +1,67 @@
+#pragma once
+// PETSc's error codes, object lifetimes and log stages in C++ terms.
+
+#include <petscksp.h>
+#include <petscsf.h>
+
+#include <source_location>
+#include <stdexcept>
+#include <utility>
+
+namespace impinge {
+
+/// A PETSc call that failed on this rank: an environment error or a bug, never a state of the numerics.
+class PetscFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws PetscFailure, with the caller's place and PETSc's text, unless the code is 0. Not collective.
+void check(PetscErrorCode code, std::source_location place = std::source_location::current());
+
+/// Owns one PETSc object; destroy(&object) is PETSc's own function.
+template <class Object, PetscErrorCode (*destroy)(Object*)>
+class PetscHandle {
+ public:
+  PetscHandle() = default;
+  PetscHandle(PetscHandle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  PetscHandle& operator=(PetscHandle&& other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~PetscHandle() { reset(); }
+
+  operator Object() const { return object_; }
+
+  /// For PETSc's create functions. Destroys what was held before.
+  Object* address() {
+    reset();
+    return &object_;
+  }
+
+  void reset() {
+    if (object_ != nullptr) destroy(&object_);
+    object_ = nullptr;
+  }
+
+ private:
+  Object object_ = nullptr;
+};
+
+using PetscMatrix = PetscHandle<Mat, MatDestroy>;
+using PetscVector = PetscHandle<::Vec, VecDestroy>;
+using PetscSolver = PetscHandle<KSP, KSPDestroy>;
+using PetscForest = PetscHandle<PetscSF, PetscSFDestroy>;
+
+/// Attributes the time between construction and destruction to one -log_view stage.
+class LogStage {
+ public:
+  explicit LogStage(PetscLogStage stage) { PetscLogStagePush(stage); }
+  ~LogStage() { PetscLogStagePop(); }
+  LogStage(const LogStage&) = delete;
+  LogStage& operator=(const LogStage&) = delete;
+
+  static PetscLogStage register_stage(const char* name);
+};
+
+}  // namespace impinge

@@ -1,0 +1,108 @@
+#pragma once
+// The state of a run and one time step.
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "impinge/config.hpp"
+#include "impinge/domain.hpp"
+#include "impinge/geometry.hpp"
+#include "impinge/neighbours.hpp"
+#include "impinge/pressure.hpp"
+
+namespace impinge {
+
+/// A step that could not be completed: divergence of the flow or of the linear solver. Thrown by all ranks. Exit 3.
+class SolveError : public std::runtime_error {
+ public:
+  SolveError(std::int64_t step, std::string phase, const std::string& reason);
+  std::int64_t step() const { return step_; }
+  const std::string& phase() const { return phase_; }
+
+ private:
+  std::int64_t step_;
+  std::string phase_;
+};
+
+/// What bounds the time step.
+enum class StepLimit { case_dt, cfl };
+
+/// Totals over all ranks after a step.
+struct StepReport {
+  std::int64_t step = 0;
+  double time = 0.0;                     ///< [s]
+  double dt = 0.0;                       ///< [s]
+  StepLimit limit = StepLimit::case_dt;  ///< what dt was bounded by
+  std::int64_t particles = 0;            ///< of every type
+  std::int64_t fluid = 0;                ///< stored
+  std::int64_t in = 0;                   ///< fluid at the start and through the inlet since
+  std::int64_t out = 0;                  ///< fluid through the outlets
+  std::int64_t lost = 0;                 ///< outside the background grid
+  double kinetic_energy = 0.0;           ///< of the fluid [J; J/m in 2D]
+  double max_speed = 0.0;                ///< of the fluid [m/s]
+  double max_pressure = 0.0;             ///< [Pa]
+  double floor_force = 0.0;              ///< pressure force on plate or floor [N; N/m in 2D]
+  PressureReport pressure;
+};
+
+/// The MPS method on the particles of all ranks. Every public function that is not const is collective.
+template <int Dim>
+class Simulation {
+ public:
+  /// Creates, partitions and sorts the initial particles; number density and free surface are measured. Throws
+  /// SolveError where particles lie outside the background grid.
+  Simulation(MPI_Comm comm, const Config& config);
+
+  /// Advances by one time step. Throws SolveError; particles() then hold the state of the phase that failed.
+  void step();
+
+  /// Particles; number density and free surface are those the last pressure was solved with.
+  const Particles<Dim>& particles() const { return particles_; }
+  const StepReport& report() const { return report_; }
+  const PressureSolver& pressure_solver() const { return pressure_solver_; }
+
+  /// Time span over which the wall pressure has been averaged so far [s].
+  double window_begin() const { return window_begin_; }
+  double window_end() const { return window_end_; }
+
+  /// Memory of particles, pair lists and matrix on this rank [bytes].
+  std::size_t bytes() const;
+
+  /// Largest over mean work of the ranks.
+  double imbalance() const { return domain_.imbalance(particles_); }
+
+ private:
+  void choose_time_step();
+  void predict();
+  void move_boundaries();
+  void redistribute();
+  void find_neighbours();
+  void measure_density();
+  void solve_pressure();
+  void correct();
+  void collide();
+  void take_stock();
+
+  [[noreturn]] void fail(const char* phase, const std::string& reason) const;
+
+  MPI_Comm comm_;
+  Config config_;
+  LatticeSums near_sums_;  // of the number density's radius
+  LatticeSums far_sums_;   // of the Laplacian's radius
+  double laplacian_factor_;  // 2 Dim/(n0 lambda) [1/m^2]
+  Vec<Dim> gravity_;
+  std::unique_ptr<Geometry<Dim>> geometry_;
+  Domain<Dim> domain_;
+  NeighbourSearch<Dim> search_;
+  PressureSolver pressure_solver_;
+  Particles<Dim> particles_;
+  StepReport report_;
+  double window_begin_ = 0.0;
+  double window_end_ = 0.0;
+  std::vector<PressureRole> role_;
+  std::vector<double> source_;
+  std::vector<Vec<Dim>> velocity_change_;
+};
+
+}  // namespace impinge

@@ -1,0 +1,101 @@
+#include "impinge/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace impinge {
+
+template <int Dim>
+CellGrid<Dim>::CellGrid(const Box<Dim>& box, const std::array<bool, Dim>& periodic, double smallest_edge)
+    : low_(box.low), periodic_(periodic) {
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double length = box.high[k] - box.low[k];
+    const double cells = length / smallest_edge;
+    extent_[axis] = std::max(1, static_cast<int>(periodic[axis] ? std::floor(cells) : std::ceil(cells)));
+    edge_[k] = periodic[axis] ? length / extent_[axis] : smallest_edge;
+  }
+}
+
+template <int Dim>
+CellGrid<Dim> CellGrid<Dim>::refined(int parts) const {
+  CellGrid fine = *this;
+  for (int k = 0; k < Dim; ++k) {
+    fine.extent_[static_cast<std::size_t>(k)] *= parts;
+    fine.edge_[k] /= parts;
+  }
+  return fine;
+}
+
+template <int Dim>
+int CellGrid<Dim>::count() const {
+  int cells = 1;
+  for (const int n : extent_) cells *= n;
+  return cells;
+}
+
+template <int Dim>
+std::array<int, Dim> CellGrid<Dim>::coordinates(const Vec<Dim>& position) const {
+  std::array<int, Dim> at;
+  for (int k = 0; k < Dim; ++k)
+    at[static_cast<std::size_t>(k)] = static_cast<int>(std::floor((position[k] - low_[k]) / edge_[k]));
+  return at;
+}
+
+template <int Dim>
+std::array<int, Dim> CellGrid<Dim>::coordinates(int cell) const {
+  std::array<int, Dim> at;
+  for (int k = Dim - 1; k >= 0; --k) {
+    const auto axis = static_cast<std::size_t>(k);
+    at[axis] = cell % extent_[axis];
+    cell /= extent_[axis];
+  }
+  return at;
+}
+
+template <int Dim>
+int CellGrid<Dim>::cell(const Vec<Dim>& position) const {
+  int index = 0;
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double at = std::floor((position[k] - low_[k]) / edge_[k]);
+    if (!(at >= 0.0 && at < extent_[axis])) return -1;
+    index = index * extent_[axis] + static_cast<int>(at);
+  }
+  return index;
+}
+
+template <int Dim>
+int CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Vec<Dim>& shift) const {
+  shift = {};
+  int index = 0;
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const int n = extent_[axis];
+    int& at = coordinates[axis];
+    if (at < 0 || at >= n) {
+      if (!periodic_[axis]) return -1;
+      shift[k] = (at < 0 ? n : -n) * edge_[k];
+      at += at < 0 ? n : -n;
+    }
+    index = index * n + at;
+  }
+  return index;
+}
+
+template <int Dim>
+Vec<Dim> CellGrid<Dim>::wrapped(Vec<Dim> position) const {
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    if (!periodic_[axis]) continue;
+    const double period = extent_[axis] * edge_[k];
+    if (position[k] < low_[k]) position[k] += period;
+    if (position[k] >= low_[k] + period) position[k] -= period;
+  }
+  return position;
+}
+
+template class CellGrid<2>;
+template class CellGrid<3>;
+
+}  // namespace impinge

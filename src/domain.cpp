@@ -1,0 +1,252 @@
+#include "impinge/domain.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <numeric>
+#include <tuple>
+
+#include "impinge/partition.hpp"
+
+namespace impinge {
+namespace {
+
+// Relative cost of a particle: one with a row of neighbours against one that is only seen by others.
+int work_of(ParticleType type) { return type == ParticleType::fluid || type == ParticleType::wall ? 4 : 1; }
+
+template <int Dim>
+double work_of(const Particles<Dim>& particles) {
+  double work = 0.0;
+  for (int i = 0; i < particles.owned; ++i) work += work_of(particles.type[static_cast<std::size_t>(i)]);
+  return work;
+}
+
+// Calls use(neighbour cell, shift) for the cells around a cell, itself excluded, in a fixed order.
+template <int Dim, class Use>
+void for_neighbour_cells(const CellGrid<Dim>& cells, int cell, Use&& use) {
+  const auto centre = cells.coordinates(cell);
+  const int combinations = Dim == 2 ? 9 : 27;
+  for (int code = 0; code < combinations; ++code) {
+    if (code == combinations / 2) continue;
+    auto at = centre;
+    int rest = code;
+    for (auto& coordinate : at) {
+      coordinate += rest % 3 - 1;
+      rest /= 3;
+    }
+    Vec<Dim> shift;
+    const int neighbour = cells.wrapped_cell(at, shift);
+    if (neighbour >= 0) use(neighbour, shift);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+Domain<Dim>::Domain(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
+                    Partitioner partitioner)
+    : comm_(comm), cells_(box, periodic, reach), fine_(cells_.refined(cell_parts)), partitioner_(partitioner) {}
+
+template <int Dim>
+void Domain<Dim>::partition(const Particles<Dim>& particles) {
+  const auto n_cells = static_cast<std::size_t>(cells_.count());
+  std::vector<int> work(n_cells, 0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    const int cell = cells_.cell(cells_.wrapped(particles.position[i]));
+    if (cell >= 0) work[static_cast<std::size_t>(cell)] += work_of(particles.type[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, work.data(), cells_.count(), MPI_INT, MPI_SUM, comm_);
+
+  // The graph of the occupied cells.
+  std::vector<int> vertex_of(n_cells, -1);
+  CellGraph graph;
+  std::vector<int> cell_of;
+  for (std::size_t cell = 0; cell < n_cells; ++cell) {
+    if (work[cell] == 0) continue;
+    vertex_of[cell] = static_cast<int>(cell_of.size());
+    cell_of.push_back(static_cast<int>(cell));
+    graph.vertex_weight.push_back(work[cell]);
+  }
+  for (const int cell : cell_of) {
+    for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>&) {
+      const auto n = static_cast<std::size_t>(neighbour);
+      if (vertex_of[n] < 0 || neighbour == cell) return;
+      graph.neighbour.push_back(vertex_of[n]);
+      graph.edge_weight.push_back(work[static_cast<std::size_t>(cell)] + work[n]);
+    });
+    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
+  }
+  const std::vector<int> part = partition_graph(comm_, graph, partitioner_);
+
+  // Empty cells follow the nearest occupied one: a breadth-first walk from all occupied cells at once.
+  owner_.assign(n_cells, -1);
+  std::deque<int> front;
+  std::vector<double> rank_work(static_cast<std::size_t>(ranks_of(comm_)), 0.0);
+  for (std::size_t v = 0; v < cell_of.size(); ++v) {
+    owner_[static_cast<std::size_t>(cell_of[v])] = part[v];
+    rank_work[static_cast<std::size_t>(part[v])] += graph.vertex_weight[v];
+    front.push_back(cell_of[v]);
+  }
+  while (!front.empty()) {
+    const int cell = front.front();
+    front.pop_front();
+    for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>&) {
+      int& owner = owner_[static_cast<std::size_t>(neighbour)];
+      if (owner >= 0) return;
+      owner = owner_[static_cast<std::size_t>(cell)];
+      front.push_back(neighbour);
+    });
+  }
+  std::replace(owner_.begin(), owner_.end(), -1, 0);
+  const double total = std::accumulate(rank_work.begin(), rank_work.end(), 0.0);
+  const double largest = *std::max_element(rank_work.begin(), rank_work.end());
+  achieved_imbalance_ = total > 0.0 ? largest * static_cast<double>(rank_work.size()) / total : 1.0;
+  find_halo_targets();
+}
+
+template <int Dim>
+void Domain<Dim>::find_halo_targets() {
+  const int self = rank_of(comm_);
+  targets_.clear();
+  target_start_.assign(1, 0);
+  for (int cell = 0; cell < cells_.count(); ++cell) {
+    const auto first = static_cast<std::ptrdiff_t>(targets_.size());
+    if (owner_[static_cast<std::size_t>(cell)] == self) {
+      for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>& shift) {
+        const int rank = owner_[static_cast<std::size_t>(neighbour)];
+        if (rank == self && shift == Vec<Dim>{}) return;
+        const auto known = std::find_if(targets_.begin() + first, targets_.end(),
+                                        [&](const Target& t) { return t.rank == rank && t.shift == shift; });
+        if (known == targets_.end()) targets_.push_back({rank, shift});
+      });
+    }
+    target_start_.push_back(static_cast<int>(targets_.size()));
+  }
+}
+
+template <int Dim>
+double Domain<Dim>::imbalance(const Particles<Dim>& particles) const {
+  const double work = work_of(particles);
+  const double total = sum_over_ranks(comm_, work);
+  return total > 0.0 ? max_over_ranks(comm_, work) * ranks_of(comm_) / total : 1.0;
+}
+
+template <int Dim>
+bool Domain<Dim>::owns(const Vec<Dim>& position) const {
+  const int cell = cells_.cell(cells_.wrapped(position));
+  return cell >= 0 && owner_[static_cast<std::size_t>(cell)] == rank_of(comm_);
+}
+
+template <int Dim>
+std::int64_t Domain<Dim>::migrate(Particles<Dim>& particles) {
+  particles.resize(particles.owned);
+  const int self = rank_of(comm_);
+  std::int64_t lost = 0;
+  std::vector<std::pair<int, int>> leaving;  // (destination, index)
+  int kept = 0;
+  std::vector<ParticleRecord<Dim>> packed;
+  for (int i = 0; i < particles.owned; ++i) {
+    ParticleRecord<Dim> record = particles.record(i);
+    record.position = cells_.wrapped(record.position);
+    const int cell = cells_.cell(record.position);
+    if (cell < 0) {
+      ++lost;
+      continue;
+    }
+    const int rank = owner_[static_cast<std::size_t>(cell)];
+    if (rank == self) {
+      particles.set_record(kept++, record);
+    } else {
+      leaving.emplace_back(rank, static_cast<int>(packed.size()));
+      packed.push_back(record);
+    }
+  }
+  std::stable_sort(leaving.begin(), leaving.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ParticleRecord<Dim>> send;
+  std::vector<std::pair<int, int>> runs;
+  for (const auto& [rank, index] : leaving) {
+    if (runs.empty() || runs.back().first != rank) runs.emplace_back(rank, 0);
+    ++runs.back().second;
+    send.push_back(packed[static_cast<std::size_t>(index)]);
+  }
+  const Exchange exchange(comm_, runs);
+  std::vector<ParticleRecord<Dim>> received(static_cast<std::size_t>(exchange.n_receive()));
+  exchange.forward(send.data(), received.data());
+
+  particles.owned = kept;
+  particles.resize(kept);
+  for (const auto& record : received) particles.append(record);
+  sort_along_cells(particles);
+  return lost;
+}
+
+template <int Dim>
+void Domain<Dim>::sort_along_cells(Particles<Dim>& particles) const {
+  const auto n = static_cast<std::size_t>(particles.owned);
+  std::vector<std::tuple<int, std::int64_t, int>> order(n);
+  for (std::size_t i = 0; i < n; ++i)
+    order[i] = {fine_.cell(particles.position[i]), particles.id[i], static_cast<int>(i)};
+  if (std::is_sorted(order.begin(), order.end())) return;
+  std::sort(order.begin(), order.end());
+  std::vector<ParticleRecord<Dim>> sorted(n);
+  for (std::size_t i = 0; i < n; ++i) sorted[i] = particles.record(std::get<2>(order[i]));
+  for (std::size_t i = 0; i < n; ++i) particles.set_record(static_cast<int>(i), sorted[i]);
+}
+
+template <int Dim>
+void Domain<Dim>::build_halo(Particles<Dim>& particles) {
+  struct HaloRecord {
+    ParticleRecord<Dim> particle;
+    PetscInt row;
+  };
+  particles.resize(particles.owned);
+  PetscInt first_row = 0;
+  const PetscInt owned = particles.owned;
+  MPI_Exscan(&owned, &first_row, 1, MPIU_INT, MPI_SUM, comm_);
+
+  // What is sent, by destination and then in the order of the owned particles.
+  std::vector<std::tuple<int, int, int>> sends;  // (destination, index, target)
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto cell = static_cast<std::size_t>(cells_.cell(particles.position[static_cast<std::size_t>(i)]));
+    for (int t = target_start_[cell]; t < target_start_[cell + 1]; ++t)
+      sends.emplace_back(targets_[static_cast<std::size_t>(t)].rank, i, t);
+  }
+  std::sort(sends.begin(), sends.end());
+  std::vector<std::pair<int, int>> runs;
+  std::vector<int> index;
+  std::vector<Vec<Dim>> shift;
+  std::vector<HaloRecord> packed;
+  for (const auto& [rank, i, target] : sends) {
+    if (runs.empty() || runs.back().first != rank) runs.emplace_back(rank, 0);
+    ++runs.back().second;
+    index.push_back(i);
+    shift.push_back(targets_[static_cast<std::size_t>(target)].shift);
+    packed.push_back({particles.record(i), first_row + i});
+    packed.back().particle.position += shift.back();
+  }
+  halo_ = Halo(Exchange(comm_, runs), std::move(index));
+  halo_shift_ = std::move(shift);
+
+  std::vector<HaloRecord> received(static_cast<std::size_t>(halo_.exchange().n_receive()));
+  halo_.exchange().forward(packed.data(), received.data());
+  particles.resize(particles.owned + halo_.exchange().n_receive());
+  rows_.resize(static_cast<std::size_t>(particles.size()));
+  std::iota(rows_.begin(), rows_.begin() + particles.owned, first_row);
+  for (std::size_t k = 0; k < received.size(); ++k) {
+    const auto at = static_cast<std::size_t>(particles.owned) + k;
+    particles.set_record(static_cast<int>(at), received[k].particle);
+    rows_[at] = received[k].row;
+  }
+}
+
+template <int Dim>
+void Domain<Dim>::refresh_positions(Particles<Dim>& particles) const {
+  std::vector<Vec<Dim>> packed(halo_shift_.size());
+  for (std::size_t k = 0; k < packed.size(); ++k)
+    packed[k] = particles.position[static_cast<std::size_t>(halo_.index()[k])] + halo_shift_[k];
+  halo_.exchange().forward(packed.data(), particles.position.data() + particles.owned);
+}
+
+template class Domain<2>;
+template class Domain<3>;
+
+}  // namespace impinge

@@ -1,0 +1,142 @@
+#include "impinge/geometry.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "impinge/jet_geometry.hpp"
+#include "impinge/lattice.hpp"
+
+namespace impinge {
+namespace {
+
+// Cells of an axis-aligned lattice of `extent` points whose first point is half a spacing inside the corner `low`.
+template <int Dim>
+struct BoxLattice {
+  Vec<Dim> low;
+  std::array<std::int64_t, Dim> extent;
+  double spacing;
+
+  std::int64_t count() const {
+    std::int64_t points = 1;
+    for (const auto n : extent) points *= n;
+    return points;
+  }
+  Vec<Dim> point(std::int64_t k) const {
+    Vec<Dim> position;
+    for (int axis = Dim - 1; axis >= 0; --axis) {
+      const auto n = extent[static_cast<std::size_t>(axis)];
+      position[axis] = low[axis] + (static_cast<double>(k % n) + 0.5) * spacing;
+      k /= n;
+    }
+    return position;
+  }
+};
+
+/// A box open at the top, partly filled with fluid at rest; the last axis is the vertical one.
+template <int Dim>
+class TankGeometry final : public Geometry<Dim> {
+ public:
+  explicit TankGeometry(const Config& config) : fluid_height_(config.tank.fluid_height) {
+    lattice_.spacing = config.particles.spacing;
+    for (int k = 0; k < Dim; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      size_[k] = config.tank.size[axis];
+      lattice_.low[k] = -wall_layers * lattice_.spacing;
+      lattice_.extent[axis] = std::lround(size_[k] / lattice_.spacing) + (k == Dim - 1 ? 1 : 2) * wall_layers;
+    }
+  }
+
+  Box<Dim> bounds() const override {
+    Box<Dim> box{lattice_.low, size_};
+    for (int k = 0; k < Dim - 1; ++k) box.high[k] += wall_layers * lattice_.spacing;
+    box.high[Dim - 1] += size_[Dim - 1];
+    return box;
+  }
+
+  void fill(int rank, int ranks, Particles<Dim>& particles) const override {
+    for_share(lattice_.count(), rank, ranks, [&](std::int64_t k) {
+      const Vec<Dim> position = lattice_.point(k);
+      double depth = 0.0;  // into the walls
+      for (int axis = 0; axis < Dim; ++axis) {
+        depth = std::max(depth, -position[axis]);
+        if (axis < Dim - 1) depth = std::max(depth, position[axis] - size_[axis]);
+      }
+      if (depth == 0.0 && position[Dim - 1] > fluid_height_) return;
+      const ParticleType type = depth == 0.0                 ? ParticleType::fluid
+                                : depth < lattice_.spacing ? ParticleType::wall
+                                                           : ParticleType::ghost;
+      particles.append({position, {}, 0.0, 0.0, k, type});
+    });
+  }
+
+  bool on_floor(const Vec<Dim>& position) const override {
+    for (int axis = 0; axis < Dim - 1; ++axis)
+      if (position[axis] < 0.0 || position[axis] > size_[axis]) return false;
+    return position[Dim - 1] < 0.0;
+  }
+
+ private:
+  Vec<Dim> size_;
+  double fluid_height_;
+  BoxLattice<Dim> lattice_;
+};
+
+/// Fluid that fills a box periodic along every axis, in a shear flow u_x = U sin(2 pi y/L_y).
+template <int Dim>
+class PeriodicBoxGeometry final : public Geometry<Dim> {
+ public:
+  explicit PeriodicBoxGeometry(const Config& config) : shear_speed_(config.periodic_box.shear_speed) {
+    lattice_.spacing = config.particles.spacing;
+    for (int k = 0; k < Dim; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      size_[k] = config.periodic_box.size[axis];
+      lattice_.extent[axis] = std::lround(size_[k] / lattice_.spacing);
+    }
+  }
+
+  Box<Dim> bounds() const override { return {{}, size_}; }
+
+  std::array<bool, Dim> periodic() const override {
+    std::array<bool, Dim> all;
+    all.fill(true);
+    return all;
+  }
+
+  void fill(int rank, int ranks, Particles<Dim>& particles) const override {
+    for_share(lattice_.count(), rank, ranks, [&](std::int64_t k) {
+      const Vec<Dim> position = lattice_.point(k);
+      Vec<Dim> velocity;
+      velocity[0] = shear_speed_ * std::sin(2.0 * std::numbers::pi * position[1] / size_[1]);
+      particles.append({position, velocity, 0.0, 0.0, k, ParticleType::fluid});
+    });
+  }
+
+ private:
+  Vec<Dim> size_;
+  double shear_speed_;
+  BoxLattice<Dim> lattice_{};
+};
+
+}  // namespace
+
+template <int Dim>
+std::unique_ptr<Geometry<Dim>> make_geometry(const Config& config) {
+  switch (config.geometry) {
+    case GeometryType::tank:
+      return std::make_unique<TankGeometry<Dim>>(config);
+    case GeometryType::periodic_box:
+      return std::make_unique<PeriodicBoxGeometry<Dim>>(config);
+    case GeometryType::jet:
+      break;
+  }
+  if constexpr (Dim == 2) {
+    return std::make_unique<JetGeometry>(config);
+  } else {
+    throw InputError({"geometry = \"jet\" exists in two dimensions only"});
+  }
+}
+
+template std::unique_ptr<Geometry<2>> make_geometry(const Config&);
+template std::unique_ptr<Geometry<3>> make_geometry(const Config&);
+
+}  // namespace impinge

@@ -1,0 +1,134 @@
+#include "impinge/jet_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "impinge/lattice.hpp"
+
+namespace impinge {
+
+JetGeometry::JetGeometry(const Config& config)
+    : jet_(config.jet.width, config.jet.speed, config.fluid.density, config.jet.angle * std::numbers::pi / 180.0),
+      start_(config.jet.start),
+      spacing_(config.particles.spacing),
+      speed_(config.jet.speed),
+      plate_begin_(config.plate.begin),
+      plate_end_(config.plate.end) {
+  const double angle = config.jet.angle * std::numbers::pi / 180.0;
+  const double width = config.jet.width;
+  const double dp = spacing_;
+  along_ = {{std::cos(angle), -std::sin(angle)}};
+  across_ = {{std::sin(angle), std::cos(angle)}};
+  particles_per_row_ = static_cast<int>(std::lround(width / dp));
+  buffer_rows_ = static_cast<int>(std::ceil(config.kernel.laplacian_radius)) + 1;
+
+  const double length = config.jet.inlet_distance * width;  // along the axis, inlet plane to plate
+  const Vec<2> plate_point{{jet_.axis_position(), 0.0}};
+  inlet_corner_ = plate_point - length * along_ - 0.5 * width * across_;
+
+  // An impacting column ends in a straight edge whose lower corner touches the plate.
+  const double column = start_ == JetStart::impact ? inlet_corner_[1] / std::sin(angle) : length + width;
+  column_rows_ = static_cast<std::int64_t>(std::floor(column / dp + 1e-9));
+  wall_columns_ = std::lround((plate_end_ - plate_begin_) / dp);
+  steady_seam_ = std::round(0.5 * inlet_corner_[1] / dp) * dp;
+  film_rows_ = start_ == JetStart::steady ? std::lround(steady_seam_ / dp) : 0;
+
+  last_row_ = -(buffer_rows_ - 0.5) * dp;
+  next_id_ = wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ +
+             film_rows_ * wall_columns_;
+
+  // Everything the plate, the ghosts and the buffer occupy, and room above for splash.
+  bounds_ = {{{plate_begin_, -wall_layers * dp}}, {{plate_end_, 0.0}}};
+  for (const double s : {-(buffer_rows_ + 1) * dp, 0.0}) {
+    for (const double t : {0.0, width}) {
+      for (int k = 0; k < 2; ++k) {
+        bounds_.low[k] = std::min(bounds_.low[k], at(s, t)[k] - dp);
+        bounds_.high[k] = std::max(bounds_.high[k], at(s, t)[k] + dp);
+      }
+    }
+  }
+  bounds_.high[1] += width;
+}
+
+void JetGeometry::fill(int rank, int ranks, Particles<2>& particles) const {
+  const double dp = spacing_;
+  std::int64_t first_id = 0;
+
+  for_share(wall_columns_ * wall_layers, rank, ranks, [&](std::int64_t k) {
+    const std::int64_t layer = k % wall_layers;
+    const double x = plate_begin_ + (static_cast<double>(k / wall_layers) + 0.5) * dp;
+    const double y = -(static_cast<double>(layer) + 0.5) * dp;
+    const ParticleType type = layer == 0 ? ParticleType::wall : ParticleType::ghost;
+    particles.append({{{x, y}}, {}, 0.0, 0.0, first_id + k, type});
+  });
+  first_id += wall_columns_ * wall_layers;
+
+  for_share((buffer_rows_ + column_rows_) * particles_per_row_, rank, ranks, [&](std::int64_t k) {
+    const double s = (static_cast<double>(k / particles_per_row_ - buffer_rows_) + 0.5) * dp;
+    const double t = (static_cast<double>(k % particles_per_row_) + 0.5) * dp;
+    const Vec<2> position = at(s, t);
+    if (s < 0.0) {
+      particles.append({position, inlet_velocity(), 0.0, 0.0, first_id + k, ParticleType::inlet});
+    } else if (start_ == JetStart::impact) {
+      if (position[1] >= 0.5 * dp * (1.0 - 1e-9))
+        particles.append({position, inlet_velocity(), 0.0, 0.0, first_id + k, ParticleType::fluid});
+    } else if (position[1] > steady_seam_ && jet_.contains(position)) {
+      particles.append(steady_fluid(position, first_id + k));
+    }
+  });
+  first_id += (buffer_rows_ + column_rows_) * particles_per_row_;
+
+  for_share(film_rows_ * wall_columns_, rank, ranks, [&](std::int64_t k) {
+    const double x = plate_begin_ + (static_cast<double>(k % wall_columns_) + 0.5) * dp;
+    const double y = (static_cast<double>(k / wall_columns_) + 0.5) * dp;
+    if (jet_.contains({{x, y}})) particles.append(steady_fluid({{x, y}}, first_id + k));
+  });
+}
+
+ParticleRecord<2> JetGeometry::steady_fluid(const Vec<2>& position, std::int64_t id) const {
+  const auto state = jet_.state(position);
+  return {position, state ? state->velocity : inlet_velocity(), state ? state->pressure : 0.0, 0.0, id,
+          ParticleType::fluid};
+}
+
+bool JetGeometry::past_outlet(const Vec<2>& position) const {
+  return position[0] < std::min(plate_begin_, bounds_.low[0] + spacing_) ||
+         position[0] > std::max(plate_end_, bounds_.high[0] - spacing_) || position[1] > bounds_.high[1] - spacing_;
+}
+
+BoundaryFlow JetGeometry::move_boundaries(double dt, Particles<2>& particles,
+                                          const std::function<bool(const Vec<2>&)>& owns) {
+  BoundaryFlow flow;
+  int kept = 0;
+  for (int i = 0; i < particles.owned; ++i) {
+    ParticleRecord<2> record = particles.record(i);
+    if (record.type == ParticleType::inlet && distance_past_inlet(record.position) > 0.0) {
+      record.type = ParticleType::fluid;
+      ++flow.entered;
+    }
+    if (record.type == ParticleType::fluid && past_outlet(record.position)) {
+      ++flow.left;
+      continue;
+    }
+    particles.set_record(kept++, record);
+  }
+  particles.owned = kept;
+  particles.resize(kept);
+
+  // A new row each time the buffer has moved by a spacing.
+  last_row_ += speed_ * dt;
+  while (last_row_ - spacing_ >= -buffer_rows_ * spacing_) {
+    last_row_ -= spacing_;
+    for (int k = 0; k < particles_per_row_; ++k) {
+      const Vec<2> position = at(last_row_, (k + 0.5) * spacing_);
+      if (owns(position)) particles.append({position, inlet_velocity(), 0.0, 0.0, next_id_ + k, ParticleType::inlet});
+    }
+    next_id_ += particles_per_row_;
+  }
+  return flow;
+}
+
+bool JetGeometry::on_floor(const Vec<2>& position) const { return std::abs(position[1] + 0.5 * spacing_) < 0.1 * spacing_; }
+
+}  // namespace impinge

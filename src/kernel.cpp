@@ -1,0 +1,42 @@
+#include "impinge/kernel.hpp"
+
+#include <cmath>
+
+#include "impinge/types.hpp"
+
+namespace impinge {
+
+template <int Dim>
+LatticeSums lattice_sums(KernelType type, double effective_radius) {
+  const int reach = static_cast<int>(std::ceil(effective_radius));
+  double sum = 0.0;
+  double second_moment = 0.0;
+  double half_space = 0.0;  // the surface's normal is the last axis; only neighbours on it or below count
+  const auto add = [&](const Vec<Dim>& offset) {
+    const double r = norm(offset);
+    if (r == 0.0 || r >= effective_radius) return;
+    const double weight =
+        with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+    sum += weight;
+    second_moment += weight * r * r;
+    if (offset[Dim - 1] < 0.0) half_space -= weight * offset[Dim - 1] / r;
+  };
+  const int depth = Dim == 3 ? reach : 0;
+  for (int x = -reach; x <= reach; ++x) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int z = -depth; z <= depth; ++z) {
+        Vec<Dim> offset;
+        offset[0] = x;
+        offset[1] = y;
+        if constexpr (Dim == 3) offset[2] = z;
+        add(offset);
+      }
+    }
+  }
+  return {sum, second_moment / sum, Dim * half_space / sum};
+}
+
+template LatticeSums lattice_sums<2>(KernelType, double);
+template LatticeSums lattice_sums<3>(KernelType, double);
+
+}  // namespace impinge

@@ -1,0 +1,85 @@
+#include "impinge/partition.hpp"
+
+#include <metis.h>
+#include <petscmat.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "impinge/parallel.hpp"
+
+namespace impinge {
+namespace {
+
+std::vector<int> partition_with_metis(const CellGraph& graph, int parts) {
+  idx_t n = graph.size();
+  idx_t n_parts = parts;
+  idx_t constraints = 1;
+  idx_t cut = 0;
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  std::vector<idx_t> start(graph.start.begin(), graph.start.end());
+  std::vector<idx_t> neighbour(graph.neighbour.begin(), graph.neighbour.end());
+  std::vector<idx_t> vertex_weight(graph.vertex_weight.begin(), graph.vertex_weight.end());
+  std::vector<idx_t> edge_weight(graph.edge_weight.begin(), graph.edge_weight.end());
+  std::vector<idx_t> part(static_cast<std::size_t>(n), 0);
+  const int code =
+      METIS_PartGraphKway(&n, &constraints, start.data(), neighbour.data(), vertex_weight.data(), nullptr,
+                          edge_weight.data(), &n_parts, nullptr, nullptr, options, &cut, part.data());
+  if (code != METIS_OK) throw std::runtime_error("METIS could not partition the background cells");
+  return {part.begin(), part.end()};
+}
+
+std::vector<int> partition_with_ptscotch(MPI_Comm comm, const CellGraph& graph, int parts) {
+  const int rank = rank_of(comm);
+  const int size = ranks_of(comm);
+  const auto first_of = [&](int r) { return static_cast<int>(static_cast<std::int64_t>(graph.size()) * r / size); };
+  const int begin = first_of(rank);
+  const int end = first_of(rank + 1);
+  // MatCreateMPIAdj takes over arrays from PetscMalloc.
+  PetscInt *start, *neighbour, *edge_weight, *vertex_weight;
+  const int first_edge = graph.start[static_cast<std::size_t>(begin)];
+  const int n_edges = graph.start[static_cast<std::size_t>(end)] - first_edge;
+  check(PetscMalloc1(end - begin + 1, &start));
+  check(PetscMalloc1(n_edges, &neighbour));
+  check(PetscMalloc1(n_edges, &edge_weight));
+  check(PetscMalloc1(end - begin, &vertex_weight));
+  for (int v = begin; v <= end; ++v) start[v - begin] = graph.start[static_cast<std::size_t>(v)] - first_edge;
+  for (int v = begin; v < end; ++v) vertex_weight[v - begin] = graph.vertex_weight[static_cast<std::size_t>(v)];
+  for (int e = 0; e < n_edges; ++e) {
+    neighbour[e] = graph.neighbour[static_cast<std::size_t>(first_edge + e)];
+    edge_weight[e] = graph.edge_weight[static_cast<std::size_t>(first_edge + e)];
+  }
+  PetscMatrix adjacency;
+  check(MatCreateMPIAdj(comm, end - begin, graph.size(), start, neighbour, edge_weight, adjacency.address()));
+  PetscHandle<MatPartitioning, MatPartitioningDestroy> partitioning;
+  check(MatPartitioningCreate(comm, partitioning.address()));
+  check(MatPartitioningSetAdjacency(partitioning, adjacency));
+  check(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+  check(MatPartitioningSetNParts(partitioning, parts));
+  check(MatPartitioningSetVertexWeights(partitioning, vertex_weight));
+  PetscHandle<IS, ISDestroy> own_part;
+  check(MatPartitioningApply(partitioning, own_part.address()));
+  PetscHandle<IS, ISDestroy> part;
+  check(ISAllGather(own_part, part.address()));
+  const PetscInt* values = nullptr;
+  check(ISGetIndices(part, &values));
+  std::vector<int> result(values, values + graph.size());
+  check(ISRestoreIndices(part, &values));
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, Partitioner partitioner) {
+  const int parts = std::min(ranks_of(comm), graph.size());
+  if (parts <= 1) return std::vector<int>(static_cast<std::size_t>(graph.size()), 0);
+  if (partitioner == Partitioner::ptscotch) return partition_with_ptscotch(comm, graph, parts);
+  std::vector<int> part(static_cast<std::size_t>(graph.size()));
+  if (rank_of(comm) == 0) part = partition_with_metis(graph, parts);
+  MPI_Bcast(part.data(), graph.size(), MPI_INT, 0, comm);
+  return part;
+}
+
+}  // namespace impinge

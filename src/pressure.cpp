@@ -1,0 +1,285 @@
+#include "impinge/pressure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace impinge {
+namespace {
+
+constexpr const char* prefix = "ppe_";
+
+// The union over the ranks of short lists, sorted.
+std::vector<PetscInt> gather_labels(MPI_Comm comm, std::vector<PetscInt> own) {
+  std::sort(own.begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
+  const int n_own = static_cast<int>(own.size());
+  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm)));
+  MPI_Allgather(&n_own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::vector<int> displacements(counts.size(), 0);
+  std::partial_sum(counts.begin(), counts.end() - 1, displacements.begin() + 1);
+  std::vector<PetscInt> all(static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0)));
+  MPI_Allgatherv(own.data(), n_own, MPIU_INT, all.data(), counts.data(), displacements.data(), MPIU_INT, comm);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+std::size_t place_of(const std::vector<PetscInt>& labels, PetscInt label) {
+  return static_cast<std::size_t>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
+}
+
+// Spreads a mark from particle to particle until nothing changes on any rank. improve(i) updates particle i from its
+// neighbours and says whether it changed. Sweeps go forth and back along the sorted particles, so few are needed.
+template <class T, class Improve>
+void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Improve&& improve) {
+  bool changed_anywhere = true;
+  while (changed_anywhere) {
+    halo.refresh(mark, owned);
+    bool changed = false;
+    bool again = true;
+    while (again) {
+      again = false;
+      for (int i = 0; i < owned; ++i) again |= improve(i);
+      for (int i = owned - 1; i >= 0; --i) again |= improve(i);
+      changed |= again;
+    }
+    changed_anywhere = any_rank(comm, changed);
+  }
+}
+
+}  // namespace
+
+void PressureSolver::Block::clear() {
+  start.assign(1, 0);
+  column.clear();
+  value.clear();
+}
+
+void PressureSolver::Block::append_row(std::vector<std::pair<PetscInt, double>>& entries) {
+  std::sort(entries.begin(), entries.end());
+  for (const auto& [to, entry] : entries) {
+    column.push_back(to);
+    value.push_back(entry);
+  }
+  start.push_back(static_cast<PetscInt>(column.size()));
+}
+
+PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm) {
+  check(KSPCreate(comm, solver_.address()));
+  check(KSPSetOptionsPrefix(solver_, prefix));
+  check(KSPSetType(solver_, KSPCG));
+  check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+  // A warm start may begin far above |b|: that is no divergence.
+  check(KSPSetTolerances(solver_, tolerance, PETSC_DEFAULT, 1e20, 10000));
+  check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
+  PC preconditioner;
+  check(KSPGetPC(solver_, &preconditioner));
+  check(PCSetType(preconditioner, PCHYPRE));
+  char chosen[64] = "hypre";
+  check(PetscOptionsGetString(nullptr, prefix, "-pc_type", chosen, sizeof chosen, nullptr));
+  if (std::string(chosen) == "hypre") {
+    set_default_option("pc_hypre_boomeramg_coarsen_type", "HMIS");
+    set_default_option("pc_hypre_boomeramg_interp_type", "ext+i");
+    set_default_option("pc_hypre_boomeramg_P_max", "4");
+    set_default_option("pc_hypre_boomeramg_agg_nl", "1");
+    set_default_option("pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi");
+    set_default_option("pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi");
+  }
+  check(KSPSetFromOptions(solver_));
+}
+
+void PressureSolver::set_default_option(const char* name, const char* value) {
+  const std::string option = fmt::format("-{}{}", prefix, name);
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+  if (given) return;
+  check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+  default_options_.push_back(option);
+}
+
+void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo) {
+  check(KSPReset(solver_));
+  matrix_.reset();
+  diagonal_.clear();
+  off_diagonal_.clear();
+  const int owned = equation.far.rows();
+  first_row_ = 0;
+  const PetscInt own_rows = owned;
+  MPI_Exscan(&own_rows, &first_row_, 1, MPIU_INT, MPI_SUM, comm_);
+  right_hand_side_.assign(static_cast<std::size_t>(owned), 0.0);
+  find_pockets(equation, halo);
+
+  std::vector<std::pair<PetscInt, double>> own, others;  // entries of a row
+  for (int i = 0; i < owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    own.clear();
+    others.clear();
+    if (equation.role[self] != PressureRole::unknown) {
+      own.emplace_back(i, equation.n0);
+    } else {
+      right_hand_side_[self] = -equation.source[self] / equation.factor;
+      double sum = 0.0;
+      for (int k = equation.far.begin(i); k < equation.far.end(i); ++k) {
+        const auto j = static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]);
+        if (equation.role[j] == PressureRole::excluded) continue;
+        const double weight = equation.far.weight[static_cast<std::size_t>(k)];
+        sum += weight;
+        if (equation.role[j] == PressureRole::zero) continue;
+        const PetscInt column = equation.row[j] - first_row_;
+        if (column >= 0 && column < own_rows) {
+          own.emplace_back(column, -weight);
+        } else {
+          others.emplace_back(equation.row[j], -weight);
+        }
+      }
+      if (sum == 0.0) sum = equation.n0;
+      if (pocket_[self] == equation.row[self]) sum += equation.n0;
+      own.emplace_back(i, sum);
+    }
+    diagonal_.append_row(own);
+    off_diagonal_.append_row(others);
+  }
+
+  // A pocket's source must be free of a mean, or no pressure field could answer it.
+  if (!pockets_.empty()) {
+    std::vector<double> sums(2 * pockets_.size(), 0.0);
+    for (std::size_t i = 0; i < pocket_.size(); ++i) {
+      if (pocket_[i] < 0) continue;
+      const std::size_t place = place_of(pockets_, pocket_[i]);
+      sums[2 * place] += right_hand_side_[i];
+      sums[2 * place + 1] += 1.0;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, comm_);
+    for (std::size_t i = 0; i < pocket_.size(); ++i) {
+      if (pocket_[i] < 0) continue;
+      const std::size_t place = place_of(pockets_, pocket_[i]);
+      right_hand_side_[i] -= sums[2 * place] / sums[2 * place + 1];
+    }
+  }
+
+  // The matrix uses the arrays as they are, without a copy.
+  if (ranks_of(comm_) == 1) {
+    check(MatCreateSeqAIJWithArrays(comm_, own_rows, own_rows, diagonal_.start.data(), diagonal_.column.data(),
+                                    diagonal_.value.data(), matrix_.address()));
+  } else {
+    check(MatCreateMPIAIJWithSplitArrays(comm_, own_rows, own_rows, PETSC_DETERMINE, PETSC_DETERMINE,
+                                         diagonal_.start.data(), diagonal_.column.data(), diagonal_.value.data(),
+                                         off_diagonal_.start.data(), off_diagonal_.column.data(),
+                                         off_diagonal_.value.data(), matrix_.address()));
+  }
+  check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+}
+
+void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& halo) {
+  const int owned = equation.far.rows();
+  const auto any_neighbour = [&](int i, auto&& test) {
+    for (int k = equation.far.begin(i); k < equation.far.end(i); ++k)
+      if (test(static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]))) return true;
+    return false;
+  };
+  pockets_.clear();
+  pocket_.assign(static_cast<std::size_t>(owned), -1);
+
+  // A particle is anchored if p = 0 is reached from it over unknowns.
+  std::vector<std::uint8_t> anchored(equation.role.size(), 0);
+  for (std::size_t i = 0; i < anchored.size(); ++i) anchored[i] = equation.role[i] == PressureRole::zero;
+  spread(comm_, halo, anchored, owned, [&](int i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (anchored[self] || equation.role[self] != PressureRole::unknown) return false;
+    anchored[self] = any_neighbour(i, [&](std::size_t j) { return anchored[j] != 0; });
+    return anchored[self] != 0;
+  });
+  const auto in_pocket = [&](std::size_t i) { return equation.role[i] == PressureRole::unknown && !anchored[i]; };
+  bool found = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) found |= in_pocket(i);
+  if (!any_rank(comm_, found)) return;
+
+  // A pocket's label is its smallest row.
+  halo.refresh(anchored, owned);
+  std::vector<PetscInt> label(equation.row.begin(), equation.row.end());
+  spread(comm_, halo, label, owned, [&](int i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (!in_pocket(self)) return false;
+    PetscInt smallest = label[self];
+    any_neighbour(i, [&](std::size_t j) {
+      if (in_pocket(j)) smallest = std::min(smallest, label[j]);
+      return false;
+    });
+    return std::exchange(label[self], smallest) != smallest;
+  });
+  std::vector<PetscInt> own_labels;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) {
+    if (!in_pocket(i)) continue;
+    pocket_[i] = label[i];
+    own_labels.push_back(label[i]);
+  }
+  pockets_ = gather_labels(comm_, std::move(own_labels));
+}
+
+PressureReport PressureSolver::solve(std::vector<double>& pressure) {
+  PressureReport report;
+  report.pockets = static_cast<int>(pockets_.size());
+  const auto n = static_cast<PetscInt>(right_hand_side_.size());
+  PetscVector b, x, residual;
+  check(VecCreateMPIWithArray(comm_, 1, n, PETSC_DETERMINE, right_hand_side_.data(), b.address()));
+  check(VecCreateMPIWithArray(comm_, 1, n, PETSC_DETERMINE, pressure.data(), x.address()));
+  double b_norm = 0.0;
+  check(VecNorm(b, NORM_2, &b_norm));
+  if (!std::isfinite(b_norm)) {
+    report.failure = "the source is not a number";
+    return report;
+  }
+  if (b_norm == 0.0) {
+    check(VecZeroEntries(x));
+    return report;
+  }
+  // The last step's pressure, if it is a better guess than zero.
+  double start_norm = 0.0;
+  check(VecDuplicate(b, residual.address()));
+  check(MatMult(matrix_, x, residual));
+  check(VecAXPY(residual, -1.0, b));
+  check(VecNorm(residual, NORM_2, &start_norm));
+  if (!(start_norm < b_norm)) check(VecZeroEntries(x));
+
+  check(KSPSetOperators(solver_, matrix_, matrix_));
+  check(KSPSolve(solver_, b, x));
+  KSPConvergedReason reason;
+  PetscInt iterations = 0;
+  check(KSPGetConvergedReason(solver_, &reason));
+  check(KSPGetIterationNumber(solver_, &iterations));
+  check(MatMult(matrix_, x, residual));
+  check(VecAXPY(residual, -1.0, b));
+  check(VecNorm(residual, NORM_2, &report.residual));
+  report.residual /= b_norm;
+  report.iterations = static_cast<int>(iterations);
+  if (reason < 0)
+    report.failure = fmt::format("{} after {} iterations, relative residual {:.2e}", KSPConvergedReasons[reason],
+                                 iterations, report.residual);
+
+  if (!pockets_.empty()) {
+    std::vector<double> lowest(pockets_.size(), std::numeric_limits<double>::max());
+    for (std::size_t i = 0; i < pocket_.size(); ++i) {
+      if (pocket_[i] < 0) continue;
+      double& low = lowest[place_of(pockets_, pocket_[i])];
+      low = std::min(low, pressure[i]);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_DOUBLE, MPI_MIN, comm_);
+    for (std::size_t i = 0; i < pocket_.size(); ++i)
+      if (pocket_[i] >= 0) pressure[i] -= lowest[place_of(pockets_, pocket_[i])];
+  }
+  return report;
+}
+
+std::size_t PressureSolver::bytes() const {
+  std::size_t sum = right_hand_side_.capacity() * sizeof(double) + pocket_.capacity() * sizeof(PetscInt);
+  for (const Block* block : {&diagonal_, &off_diagonal_})
+    sum += (block->start.capacity() + block->column.capacity()) * sizeof(PetscInt) +
+           block->value.capacity() * sizeof(double);
+  return sum;
+}
+
+}  // namespace impinge
