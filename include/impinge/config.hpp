@@ -38,9 +38,9 @@ struct Config {
   } kernel;
 
   struct {
-    double gamma = 0.01;          ///< weight of the density term in the PPE source
-    double tolerance = 1e-6;      ///< relative residual of the PPE solve
-    bool clamp_negative = true;   ///< set negative pressures to zero after the solve
+    double gamma = 0.01;         ///< weight of the density term in the PPE source
+    double tolerance = 1e-6;     ///< relative residual of the PPE solve
+    bool clamp_negative = true;  ///< set negative pressures to zero after the solve
   } pressure;
 
   struct {
@@ -58,7 +58,7 @@ struct Config {
     double end = 0.0;        ///< [s], required
     double dt = 0.0;         ///< largest step [s], required
     double cfl = 0.2;        ///< dt <= cfl dp / |u|max
-    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; 0: 20 reference speeds
+    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; default: 20 reference speeds
   } time;
 
   struct {
@@ -70,8 +70,8 @@ struct Config {
   } jet;
 
   struct {
-    double begin = 0.0;  ///< [m] from the stagnation point; default from the analytic jet
-    double end = 0.0;    ///< [m]
+    double begin = 0.0;  ///< [m] from the stagnation point; default from the analytic jet, a multiple of dp
+    double end = 0.0;    ///< [m], likewise
   } plate;
 
   struct {
@@ -87,7 +87,7 @@ struct Config {
   struct {
     std::string directory;       ///< default: output/<name>
     double interval = 0.0;       ///< time between snapshots [s]; 0: first and last only
-    double average_start = 0.0;  ///< start of the wall-pressure average [s]; default: 0.8 end
+    double average_start = 0.0;  ///< start of the wall-pressure average [s]; default: 0.8 time.end
   } output;
 
   struct {
@@ -112,14 +112,19 @@ class InputError : public std::runtime_error {
 using NamedText = std::pair<std::string, std::string>;
 
 /// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
-/// Reads the disk; not collective. Throws InputError (missing file, include cycle).
+/// Reads the disk; not collective. Throws InputError (missing file, include cycle) that also lists what else is wrong
+/// in the files it could read.
 std::vector<NamedText> load_case_files(const std::string& path);
 
 /// Parses and validates; later files are defaults for earlier ones, `settings` ("key=value") override all.
-/// Touches no file. Throws InputError with every mistake.
+/// Touches no file. Throws InputError with every mistake, in the order of the files and their lines.
 Config parse_case(const std::vector<NamedText>& files, const std::vector<std::string>& settings = {});
 
 /// Every key with type, unit, default, range and doc line, as a text for the terminal.
 std::string describe_keys();
+
+/// Creates the output directory where it does not exist and tries a file in it. Touches the disk; not collective.
+/// Throws InputError that names output.directory and the reason.
+void check_writable(const std::string& directory);
 
 }  // namespace impinge
