@@ -72,7 +72,7 @@ Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> veloc
 
 template <int Dim>
 Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
-                   std::span<const ParticleType> type, double distance, double restitution, int i) {
+                   std::span<const ParticleType> type, double dt, double distance, double restitution, int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vec<Dim> centre = position[self];
   const Vec<Dim> own = velocity[self];
@@ -80,10 +80,11 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
   for_pairs(near, i, [&](std::size_t j, double) {
     if (type[j] == ParticleType::ghost) return;
     const Vec<Dim> offset = position[j] - centre;
+    const Vec<Dim> relative = own - velocity[j];
+    const double approach = dot(relative, offset);
+    const Vec<Dim> next = offset - dt * relative;
+    if (approach <= 0.0 || dot(next, next) >= distance * distance) return;
     const double r2 = dot(offset, offset);
-    if (r2 >= distance * distance) return;
-    const double approach = dot(own - velocity[j], offset);
-    if (approach <= 0.0) return;
     const double share = type[j] == ParticleType::fluid ? 0.5 : 1.0;
     change -= share * (1.0 + restitution) * approach / r2 * offset;
   });
@@ -97,7 +98,7 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
                                            std::span<const ParticleType>, double, int);                               \
   template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \
   template Vec<Dim> collision<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,              \
-                                   std::span<const ParticleType>, double, double, int);
+                                   std::span<const ParticleType>, double, double, double, int);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)
 #undef IMPINGE_INSTANTIATE

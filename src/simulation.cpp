@@ -65,14 +65,15 @@ template <int Dim>
 void Simulation<Dim>::step() {
   ++report_.step;
   choose_time_step();
-  predict();
+  accelerate();
+  collide();
+  advance();
   move_boundaries();
   redistribute();
   find_neighbours();
   measure_density();
   solve_pressure();
   correct();
-  collide();
   report_.time += report_.dt;
   take_stock();
 }
@@ -84,9 +85,9 @@ void Simulation<Dim>::choose_time_step() {
   report_.dt = std::min(config_.time.dt, largest);
 }
 
-// u* = u + dt (nu lap u + g), r* = r + dt u*.
+// u* = u + dt (nu lap u + g), with the pairs of the last step.
 template <int Dim>
-void Simulation<Dim>::predict() {
+void Simulation<Dim>::accelerate() {
   const LogStage log(stage(predicting));
   const double nu = config_.fluid.viscosity;
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), report_.dt * gravity_);
@@ -96,14 +97,37 @@ void Simulation<Dim>::predict() {
       velocity_change_[static_cast<std::size_t>(i)] +=
           nu * report_.dt * velocity_laplacian<Dim>(search_.far(), particles_.velocity, laplacian_factor_, i);
   }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
+    if (moves(particles_.type[i])) particles_.velocity[i] += velocity_change_[i];
+}
+
+// Fluid particles that are about to come too near to each other bounce.
+template <int Dim>
+void Simulation<Dim>::collide() {
+  const LogStage log(stage(predicting));
+  if (config_.collision.distance == 0.0) return;
+  domain_.refresh_positions(particles_);
+  domain_.halo().refresh(particles_.velocity, particles_.owned);
+  const double distance = config_.collision.distance * config_.particles.spacing;
+  velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});
+  for (int i = 0; i < particles_.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (moves(particles_.type[self]))
+      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
+                                              report_.dt, distance, config_.collision.restitution, i);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
+    particles_.velocity[i] += velocity_change_[i];
+}
+
+// r* = r + dt u*.
+template <int Dim>
+void Simulation<Dim>::advance() {
+  const LogStage log(stage(predicting));
   const Vec<Dim> inlet_step = report_.dt * geometry_->inlet_velocity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
-    if (moves(particles_.type[i])) {
-      particles_.velocity[i] += velocity_change_[i];
-      particles_.position[i] += report_.dt * particles_.velocity[i];
-    } else if (particles_.type[i] == ParticleType::inlet) {
-      particles_.position[i] += inlet_step;
-    }
+    if (moves(particles_.type[i])) particles_.position[i] += report_.dt * particles_.velocity[i];
+    if (particles_.type[i] == ParticleType::inlet) particles_.position[i] += inlet_step;
   }
 }
 
@@ -205,26 +229,6 @@ void Simulation<Dim>::correct() {
       velocity_change_[self] = -factor * pressure_gradient<Dim>(search_.near(), particles_.position,
                                                                 particles_.pressure, particles_.type,
                                                                 near_sums_.number_density, i);
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
-    particles_.velocity[i] += velocity_change_[i];
-    particles_.position[i] += report_.dt * velocity_change_[i];
-  }
-}
-
-template <int Dim>
-void Simulation<Dim>::collide() {
-  const LogStage log(stage(correcting));
-  if (config_.collision.distance == 0.0) return;
-  domain_.refresh_positions(particles_);
-  domain_.halo().refresh(particles_.velocity, particles_.owned);
-  const double distance = config_.collision.distance * config_.particles.spacing;
-  for (int i = 0; i < particles_.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    velocity_change_[self] = {};
-    if (moves(particles_.type[self]))
-      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
-                                              distance, config_.collision.restitution, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];

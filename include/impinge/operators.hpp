@@ -33,11 +33,12 @@ Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> posit
 template <int Dim>
 Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> velocity, double factor, int i);
 
-/// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour nearer than
-/// `distance` [m] that approaches, the pair's normal relative velocity becomes -restitution times itself; fluid
-/// partners share the change equally, so momentum is conserved, walls and inlet do not yield.
+/// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
+/// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
+/// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
+/// not yield.
 template <int Dim>
 Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
-                   std::span<const ParticleType> type, double distance, double restitution, int i);
+                   std::span<const ParticleType> type, double dt, double distance, double restitution, int i);
 
 }  // namespace impinge

@@ -74,14 +74,15 @@ class Simulation {
 
  private:
   void choose_time_step();
-  void predict();
+  void accelerate();
+  void collide();
+  void advance();
   void move_boundaries();
   void redistribute();
   void find_neighbours();
   void measure_density();
   void solve_pressure();
   void correct();
-  void collide();
   void take_stock();
 
   [[noreturn]] void fail(const char* phase, const std::string& reason) const;
