@@ -256,7 +256,7 @@ std::string_view type_text(const Key& key) {
       []<class T>(Member<T>) -> std::string_view {
         if (std::is_same_v<T, double>) return "a number";
         if (std::is_same_v<T, int>) return "an integer";
-        if (std::is_same_v<T, bool>) return "true or false";
+        if (std::is_same_v<T, bool>) return "a boolean";
         if (std::is_same_v<T, Vector>) return "an array of numbers";
         return std::is_enum_v<T> ? "a word" : "a string";
       },
@@ -272,10 +272,10 @@ std::string allowed_text(const Key& key) {
         } else if constexpr (std::is_same_v<T, bool>) {
           return "true, false";
         } else if constexpr (std::is_same_v<T, std::string>) {
-          return "a string that is not empty";
+          return "not empty";
         } else {
           const std::string unit = key.unit.empty() ? "" : fmt::format(" ({})", key.unit);
-          return (std::is_same_v<T, Vector> ? "one number a dimension, each " : "") + key.range.text() + unit;
+          return (std::is_same_v<T, Vector> ? "one per dimension, each " : "") + key.range.text() + unit;
         }
       },
       key.member);

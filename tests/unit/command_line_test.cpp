@@ -1,0 +1,70 @@
+// The command line: what is ours, what is PETSc's, what is wrong.
+
+#include "impinge/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include "impinge/config.hpp"
+
+namespace impinge {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string mistake_in(const Words& arguments) {
+  try {
+    parse_command_line(arguments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CommandLine, TakesACaseAndSettings) {
+  const CommandLine line =
+      parse_command_line({"--set", "time.dt=1e-4", "case.toml", "--set=fluid.gravity=[0, -9.81]", "--check"});
+  EXPECT_EQ(line.case_path, "case.toml");
+  EXPECT_EQ(line.settings, (Words{"time.dt=1e-4", "fluid.gravity=[0, -9.81]"}));
+  EXPECT_TRUE(line.check);
+  EXPECT_TRUE(line.petsc_arguments.empty());
+  EXPECT_TRUE(line.text.empty());
+  EXPECT_FALSE(parse_command_line({"case.toml"}).check);
+}
+
+TEST(CommandLine, SplitsOffPetscOptionsInOrder) {
+  const CommandLine line = parse_command_line({"-ppe_ksp_monitor", "case.toml", "-ppe_ksp_rtol", "1e-8", "-log_view",
+                                               "--set", "time.end=1", "-ppe_shift", "-1.5", "-ppe_pc_type", "gamg"});
+  EXPECT_EQ(line.case_path, "case.toml");
+  EXPECT_EQ(line.settings, Words{"time.end=1"});
+  EXPECT_EQ(line.petsc_arguments, (Words{"-ppe_ksp_monitor", "-ppe_ksp_rtol", "1e-8", "-log_view", "-ppe_shift", "-1.5",
+                                         "-ppe_pc_type", "gamg"}));
+}
+
+TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
+  for (const Words& arguments :
+       {Words{"--help"}, Words{"-h"}, Words{"-log_view", "-h"}, Words{"case.toml", "--help"}}) {
+    const std::string text = parse_command_line(arguments).text;
+    for (const char* part : {"--set", "--check", "--describe", "--version", "CASE.toml", "-ppe_ksp_type cg",
+                             "-ppe_pc_type hypre|gamg|bjacobi", "-ppe_ksp_monitor", "-log_view", "2 wrong input"}) {
+      EXPECT_NE(text.find(part), text.npos) << part;
+    }
+  }
+}
+
+TEST(CommandLine, PrintsVersionAndKeys) {
+  EXPECT_EQ(parse_command_line({"--version"}).text, "impinge " IMPINGE_VERSION "\n");
+  EXPECT_EQ(parse_command_line({"--describe"}).text, describe_keys());
+}
+
+TEST(CommandLine, FindsMistakes) {
+  EXPECT_EQ(mistake_in({}), "command line: the case file is missing; see impinge --help");
+  EXPECT_EQ(
+      mistake_in({"-log_view", "case"}),
+      "command line: the case file is missing (case is taken for the value of a PETSc option); see impinge --help");
+  EXPECT_NE(mistake_in({"case.toml", "other.toml"}).find("other.toml"), std::string::npos);
+  EXPECT_NE(mistake_in({"case.toml", "--chekc"}).find("--chekc"), std::string::npos);
+  EXPECT_NE(mistake_in({"case.toml", "--set"}).find("--set"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace impinge

@@ -1,0 +1,501 @@
+// Case files: every kind of mistake with its message, the order of precedence, the resolved text, the shipped cases.
+
+#include "impinge/config.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+const NamedText jet_base{"base.toml", R"(geometry = "jet"
+particles.spacing = 0.02
+time = {end = 5.0, dt = 8e-4}
+jet = {width = 0.4, speed = 1.0, angle = 60.0}
+)"};
+
+const NamedText tank_base{"base.toml", R"(geometry = "tank"
+particles.spacing = 0.01
+time = {end = 2.0, dt = 1e-3}
+tank = {size = [0.2, 0.3], fluid_height = 0.2}
+fluid.gravity = [0.0, -9.81]
+)"};
+
+const NamedText box_base{"base.toml", R"(geometry = "periodic_box"
+particles.spacing = 0.0025
+time = {end = 0.25, dt = 5e-4}
+periodic_box = {size = [0.1, 0.1], shear_speed = 0.05}
+fluid.viscosity = 1e-3
+)"};
+
+/// The case `text` with a sound case as its defaults.
+Config parse(const std::string& text, const NamedText& base = jet_base, const Texts& settings = {}) {
+  return parse_case({{"case.toml", text}, base}, settings);
+}
+
+template <class Action>
+Texts mistakes(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.mistakes();
+  }
+  return {};
+}
+
+Texts mistakes_in(const std::string& text, const NamedText& base = jet_base, const Texts& settings = {}) {
+  return mistakes([&] { parse(text, base, settings); });
+}
+
+/// An empty directory for one test.
+class CaseFiles : public testing::Test {
+ protected:
+  CaseFiles() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = fs::temp_directory_path() / ("impinge_" + std::string(info->name()) + std::to_string(getpid()));
+    fs::create_directories(directory_);
+  }
+  ~CaseFiles() override { fs::remove_all(directory_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    fs::create_directories((directory_ / name).parent_path());
+    std::ofstream(directory_ / name) << text;
+    return path(name);
+  }
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  fs::path directory_;
+};
+
+TEST(Config, TakesDefaultsFromTheOtherKeys) {
+  const Config config = parse("");
+  EXPECT_EQ(config.name, "case");
+  EXPECT_EQ(config.output.directory, "output/case");
+  EXPECT_EQ(config.output.average_start, 4.0);
+  EXPECT_EQ(config.time.max_speed, 20.0);
+  EXPECT_EQ(config.pressure.gamma, 0.01);
+  EXPECT_EQ(parse("name = \"other\"").output.directory, "output/other");
+  EXPECT_NEAR(parse("", tank_base).time.max_speed, 20.0 * std::sqrt(2.0 * 9.81 * 0.2), 1e-12);
+  EXPECT_EQ(parse("", box_base).time.max_speed, 1.0);
+}
+
+TEST(Config, AFluidAtRestHasASpeedLimitToo) {
+  EXPECT_DOUBLE_EQ(parse("fluid.gravity = [0, 0]", tank_base).time.max_speed, 20.0 * 0.01 / 1e-3);
+  EXPECT_DOUBLE_EQ(parse("periodic_box.shear_speed = 0", box_base).time.max_speed, 20.0 * 0.0025 / 5e-4);
+}
+
+TEST(Config, ThePlateReachesBeyondTheAnalyticWallPressureInWholeSpacings) {
+  const Config at60 = parse("");  // Cp = .01 at -1.2864 H and 3.2126 H
+  EXPECT_NEAR(at60.plate.begin, -1.02, 1e-12);
+  EXPECT_NEAR(at60.plate.end, 1.70, 1e-12);
+  const Config at90 = parse("jet.angle = 90");  // Cp = .01 at -+2.4039 H
+  EXPECT_NEAR(at90.plate.begin, -1.48, 1e-12);
+  EXPECT_NEAR(at90.plate.end, 1.70, 1e-12);
+  const Config given = parse("plate.begin = -0.5");
+  EXPECT_EQ(given.plate.begin, -0.5);
+  EXPECT_NEAR(given.plate.end, 1.70, 1e-12);
+}
+
+TEST(Config, FindsWrongTypes) {
+  EXPECT_EQ(mistakes_in("jet.width = \"wide\""),
+            Texts{"case.toml:1: jet.width = \"wide\": not a number; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("\ndimension = 2.0"), Texts{"case.toml:2: dimension = 2.0: not an integer; allowed: [2, 3]"});
+  EXPECT_EQ(mistakes_in("pressure.clamp_negative = 1"),
+            Texts{"case.toml:1: pressure.clamp_negative = 1: not a boolean; allowed: true, false"});
+  EXPECT_EQ(mistakes_in("name = 7"), Texts{"case.toml:1: name = 7: not a string; allowed: not empty"});
+  EXPECT_EQ(mistakes_in("jet.start = true"),
+            Texts{"case.toml:1: jet.start = true: not a word; allowed: \"impact\", \"steady\""});
+  EXPECT_EQ(mistakes_in("jet.width = {value = 1}"),
+            Texts{"case.toml:1: jet.width = {...}: not a number; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("kernel = 3"), Texts{"case.toml:1: kernel = 3: not a table; allowed: [kernel] with its keys"});
+  EXPECT_EQ(mistakes_in("[[kernel]]\nradius = 2.1").size(), 1u);
+}
+
+TEST(Config, FindsNumbersOutOfRange) {
+  EXPECT_EQ(mistakes_in("particles.spacing = -0.01"),
+            Texts{"case.toml:1: particles.spacing = -0.01: out of range; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("particles.spacing = 0"),
+            Texts{"case.toml:1: particles.spacing = 0: out of range; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("particles.spacing = nan"),
+            Texts{"case.toml:1: particles.spacing = nan: not a finite number; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("particles.spacing = inf"),
+            Texts{"case.toml:1: particles.spacing = inf: not a finite number; allowed: > 0 (m)"});
+  EXPECT_EQ(mistakes_in("pressure.gamma = 1.5"),
+            Texts{"case.toml:1: pressure.gamma = 1.5: out of range; allowed: [0, 1]"});
+  EXPECT_EQ(mistakes_in("pressure.tolerance = 1e-5"),
+            Texts{"case.toml:1: pressure.tolerance = 1e-05: out of range; allowed: (0, 1e-06]"});
+  EXPECT_EQ(mistakes_in("jet.angle = 91"), Texts{"case.toml:1: jet.angle = 91: out of range; allowed: (0, 90] (deg)"});
+  EXPECT_EQ(mistakes_in("jet.angle = 0"), Texts{"case.toml:1: jet.angle = 0: out of range; allowed: (0, 90] (deg)"});
+  EXPECT_EQ(mistakes_in("dimension = 4"), Texts{"case.toml:1: dimension = 4: out of range; allowed: [2, 3]"});
+  EXPECT_EQ(mistakes_in("kernel.laplacian_radius = 6.5"),
+            Texts{"case.toml:1: kernel.laplacian_radius = 6.5: out of range; allowed: (1, 6] (dp)"});
+}
+
+TEST(Config, FindsUnknownWordsAndEmptyStrings) {
+  EXPECT_EQ(mistakes_in("kernel.type = \"cubic\""),
+            Texts{"case.toml:1: kernel.type = \"cubic\": unknown word; allowed: \"non_singular\", \"singular\""});
+  EXPECT_EQ(mistakes_in("geometry = \"pipe\""),
+            Texts{"case.toml:1: geometry = \"pipe\": unknown word; allowed: \"jet\", \"tank\", \"periodic_box\""});
+  EXPECT_EQ(mistakes_in("output.directory = \"\""),
+            Texts{"case.toml:1: output.directory = \"\": empty; allowed: not empty"});
+  EXPECT_EQ(mistakes_in("name = \"a/b\"").size(), 1u);
+}
+
+TEST(Config, FindsWrongVectors) {
+  EXPECT_EQ(mistakes_in("fluid.gravity = [0, 0, -9.81]"),
+            Texts{"case.toml:1: fluid.gravity = [0, 0, -9.81]: has 3 numbers, but the dimension is 2; allowed: one per "
+                  "dimension, each any finite number (m/s^2)"});
+  EXPECT_EQ(mistakes_in("fluid.gravity = -9.81"),
+            Texts{"case.toml:1: fluid.gravity = -9.81: not an array of numbers; allowed: one per dimension, each any "
+                  "finite number (m/s^2)"});
+  EXPECT_EQ(mistakes_in("fluid.gravity = [0, \"g\"]").size(), 1u);
+  EXPECT_EQ(mistakes_in("tank.size = [0.2, -0.3]", tank_base),
+            Texts{"case.toml:1: tank.size = [0.2, -0.3]: out of range; allowed: one per dimension, each > 0 (m)"});
+}
+
+TEST(Config, FindsUnknownKeysAndNamesTheNearest) {
+  EXPECT_EQ(mistakes_in("[particles]\nspacin = 0.01"),
+            Texts{"case.toml:2: particles.spacin = 0.01: unknown key; did you mean particles.spacing?"});
+  EXPECT_EQ(mistakes_in("dt = 1e-3"), Texts{"case.toml:1: dt = 0.001: unknown key; did you mean time.dt?"});
+  EXPECT_EQ(mistakes_in("[partcles]\nspacing = 1"),
+            Texts{"case.toml:2: partcles.spacing = 1: unknown key; did you mean particles.spacing?"});
+  EXPECT_EQ(mistakes_in("time.steps_in_all = 1"),
+            Texts{"case.toml:1: time.steps_in_all = 1: unknown key; allowed: time.end, time.dt, time.cfl, "
+                  "time.max_speed"});
+  EXPECT_EQ(mistakes_in("turbulence.model = \"k-epsilon\""),
+            Texts{"case.toml:1: turbulence.model = \"k-epsilon\": unknown key"});
+}
+
+TEST(Config, FindsKeysOfAnotherGeometry) {
+  EXPECT_EQ(
+      mistakes_in("[tank]\nfluid_height = 0.1"),
+      Texts{"case.toml:2: tank.fluid_height = 0.1: a key of geometry \"tank\", but this case's geometry is \"jet\""});
+  EXPECT_EQ(mistakes_in("plate.end = 1.0", tank_base),
+            Texts{"case.toml:1: plate.end = 1.0: a key of geometry \"jet\", but this case's geometry is \"tank\""});
+}
+
+TEST(Config, FindsMissingKeys) {
+  EXPECT_EQ(mistakes([] {
+              parse_case({{"case.toml", "geometry = \"jet\""}});
+            }),
+            (Texts{"case.toml: particles.spacing: required key is missing; allowed: > 0 (m)",
+                   "case.toml: time.end: required key is missing; allowed: > 0 (s)",
+                   "case.toml: time.dt: required key is missing; allowed: > 0 (s)",
+                   "case.toml: jet.width: required key is missing; allowed: > 0 (m)",
+                   "case.toml: jet.speed: required key is missing; allowed: > 0 (m/s)",
+                   "case.toml: jet.angle: required key is missing; allowed: (0, 90] (deg)"}));
+  EXPECT_EQ(mistakes([] {
+              parse_case({{"case.toml", ""}});
+            }).front(),
+            "case.toml: geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\"");
+}
+
+TEST(Config, FindsWhatIsNotToml) {
+  const Texts found = mistakes_in("name = \"x\"\n[time\nend = 1");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].starts_with("case.toml:2: not TOML: ")) << found[0];
+  EXPECT_TRUE(mistakes_in("time.dt = 1\ntime.dt = 2").at(0).starts_with("case.toml:2: not TOML: "));
+}
+
+TEST(Config, GathersEveryMistakeInTheOrderOfTheLines) {
+  const Texts found = mistakes_in(R"(name = ""
+[particles]
+spacing = -0.02
+[jet]
+widht = 0.4
+angle = "steep"
+[pressure]
+gamma = 2
+[output]
+average_start = 9.0
+)",
+                                  {"base.toml", "geometry = \"jet\"\njet.width = 0.4\ntime.end = 5\nfluid.densty = 1"},
+                                  {"time.cfl=-1"});
+  EXPECT_EQ(found, (Texts{"--set: time.cfl = -1: out of range; allowed: (0, 1]",
+                          "case.toml:1: name = \"\": empty; allowed: not empty",
+                          "case.toml:3: particles.spacing = -0.02: out of range; allowed: > 0 (m)",
+                          "case.toml:5: jet.widht = 0.4: unknown key; did you mean jet.width?",
+                          "case.toml:6: jet.angle = \"steep\": not a number; allowed: (0, 90] (deg)",
+                          "case.toml:8: pressure.gamma = 2: out of range; allowed: [0, 1]",
+                          "case.toml:10: output.average_start = 9.0: the average starts after the end; allowed: [0, "
+                          "5.0) (s)",
+                          "case.toml: time.dt: required key is missing; allowed: > 0 (s)",
+                          "case.toml: jet.speed: required key is missing; allowed: > 0 (m/s)",
+                          "base.toml:4: fluid.densty = 1: unknown key; did you mean fluid.density?"}));
+}
+
+TEST(Config, WhatHasTheMistakesInOneText) {
+  const InputError error({"one", "two"});
+  EXPECT_STREQ(error.what(), "one\ntwo");
+}
+
+TEST(Config, TheJetIsWholeParticlesWide) {
+  EXPECT_EQ(mistakes_in("particles.spacing = 0.03"),
+            Texts{"base.toml:4: jet.width = 0.4: 0.4 m is 13.3333333 particle spacings; allowed: integer multiples of "
+                  "particles.spacing = 0.03 (m)"});
+  EXPECT_EQ(mistakes_in("particles.spacing = 0.1"),
+            Texts{"base.toml:4: jet.width = 0.4: narrower than 5 particles; allowed: >= 0.5 (m)"});
+  EXPECT_TRUE(mistakes_in("particles.spacing = 0.08").empty());
+}
+
+TEST(Config, TheJetIsPlane) {
+  EXPECT_EQ(mistakes_in("dimension = 3"), Texts{"case.toml:1: dimension = 3: the jet has two dimensions; allowed: 2"});
+}
+
+TEST(Config, TheJetMustHitThePlate) {
+  EXPECT_EQ(mistakes_in("[plate]\nbegin = 5.0\nend = 6.0"),
+            Texts{"case.toml:2: plate.begin = 5.0: the jet misses the plate, which must reach beyond the stagnation "
+                  "point x = 0 and from x = 0.0471747 m to 0.509055 m; allowed: < 0 (m)"});
+  EXPECT_EQ(mistakes_in("plate.end = 0.5"),
+            Texts{"case.toml:1: plate.end = 0.5: the jet misses the plate, which must reach beyond the stagnation "
+                  "point x = 0 and from x = 0.0471747 m to 0.509055 m; allowed: >= 0.509055 (m)"});
+  EXPECT_EQ(mistakes_in("plate = {begin = -0.1, end = 0.3}\njet.angle = 90"),  // meets it from -H/2 to H/2
+            Texts{"case.toml:1: plate.begin = -0.1: the jet misses the plate, which must reach beyond the stagnation "
+                  "point x = 0 and from x = -0.2 m to 0.2 m; allowed: <= -0.2 (m)"});
+  EXPECT_TRUE(mistakes_in("plate = {begin = -0.01, end = 0.51}").empty());
+}
+
+TEST(Config, TheInletStandsAboveThePlate) {
+  EXPECT_EQ(mistakes_in("jet.inlet_distance = 1.4"),
+            Texts{"case.toml:1: jet.inlet_distance = 1.4: the inlet's lower corner is less than H above the plate; "
+                  "allowed: >= 1.44338 (H)"});
+  EXPECT_EQ(mistakes_in("jet.angle = 10").at(0).substr(0, 40), "case.toml: jet.inlet_distance = 3.5: the");
+}
+
+TEST(Config, TheAverageStartsBeforeTheEnd) {
+  EXPECT_EQ(mistakes_in("output.average_start = 5"),
+            Texts{"case.toml:1: output.average_start = 5.0: the average starts after the end; allowed: [0, 5.0) (s)"});
+}
+
+TEST(Config, KernelRadiiAndSurfaceDensitiesAreOrdered) {
+  EXPECT_EQ(mistakes_in("kernel.radius = 4.5"),
+            Texts{"case.toml:1: kernel.radius = 4.5: larger than the Laplacian's radius; allowed: (1, 4.01] (dp)"});
+  EXPECT_EQ(mistakes_in("free_surface.surface_density = 0.98"),
+            Texts{"case.toml:1: free_surface.surface_density = 0.98: larger than the interior's density; allowed: [0, "
+                  "0.97] (n0)"});
+}
+
+TEST(Config, TheStepKeepsTheViscousLimit) {
+  EXPECT_EQ(mistakes_in("time.dt = 2e-3", box_base),
+            Texts{"case.toml:1: time.dt = 0.002: above the viscous limit 0.2 dp^2/nu; allowed: (0, 0.00125] (s)"});
+}
+
+TEST(Config, TanksAndBoxesAreWholeParticlesLarge) {
+  EXPECT_EQ(
+      mistakes_in("tank.size = [0.205, 0.3]", tank_base),
+      Texts{"case.toml:1: tank.size = [0.205, 0.3]: 0.205 m is 20.5 particle spacings; allowed: integer multiples "
+            "of particles.spacing = 0.01 (m)"});
+  EXPECT_EQ(
+      mistakes_in("tank.fluid_height = 0.123", tank_base),
+      Texts{"case.toml:1: tank.fluid_height = 0.123: 0.123 m is 12.3 particle spacings; allowed: integer multiples "
+            "of particles.spacing = 0.01 (m)"});
+  EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.101]", box_base),
+            Texts{"case.toml:1: periodic_box.size = [0.1, 0.101]: 0.101 m is 40.4 particle spacings; allowed: integer "
+                  "multiples of particles.spacing = 0.0025 (m)"});
+}
+
+TEST(Config, TheFluidStaysBelowTheWalls) {
+  EXPECT_EQ(mistakes_in("tank.fluid_height = 0.31", tank_base),
+            Texts{"case.toml:1: tank.fluid_height = 0.31: higher than the walls; allowed: (0, 0.3] (m)"});
+}
+
+TEST(Config, PeriodsAreThreeRadiiLong) {
+  EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.025]", box_base),
+            Texts{"case.toml:1: periodic_box.size = [0.1, 0.025]: a period is shorter than three Laplacian radii; "
+                  "allowed: >= 0.030075 (m)"});
+}
+
+TEST(Config, EarlierFilesOverrideLaterOnesAndSettingsAll) {
+  const std::vector<NamedText> files{{"case.toml", "pressure.gamma = 0.1\ntime.dt = 1e-4"},
+                                     {"common.toml", "pressure.gamma = 0.2\ntime.cfl = 0.1\ntime.dt = 1e-5"},
+                                     jet_base};
+  const Config config = parse_case(files, {"time.dt=2e-4", "time.dt=3e-4"});
+  EXPECT_EQ(config.pressure.gamma, 0.1);
+  EXPECT_EQ(config.time.cfl, 0.1);
+  EXPECT_EQ(config.time.dt, 3e-4);
+  EXPECT_EQ(config.jet.width, 0.4);
+  EXPECT_EQ(parse_case(files).time.dt, 1e-4);
+}
+
+TEST(Config, AnOverriddenValueIsNotChecked) {
+  EXPECT_TRUE(mistakes_in("pressure.gamma = 7", jet_base, {"pressure.gamma=0.5"}).empty());
+}
+
+TEST(Config, SettingsAreTomlOrBareWords) {
+  const Config config =
+      parse("", jet_base,
+            {"jet.start=steady", "kernel.type = \"singular\"", "fluid.gravity=[0, -9.81]", "output.directory=/tmp/x y",
+             "name=12", "pressure.clamp_negative=false", "plate={begin=-1.0, end=2.0}"});
+  EXPECT_EQ(config.jet.start, JetStart::steady);
+  EXPECT_EQ(config.kernel.type, KernelType::singular);
+  EXPECT_EQ(config.fluid.gravity[1], -9.81);
+  EXPECT_EQ(config.output.directory, "/tmp/x y");
+  EXPECT_EQ(config.name, "12");
+  EXPECT_FALSE(config.pressure.clamp_negative);
+  EXPECT_EQ(config.plate.end, 2.0);
+}
+
+TEST(Config, FindsMistakesInSettings) {
+  EXPECT_EQ(mistakes_in("", jet_base, {"jet.start", "=1", "jet.start=steadi", "time.dt=fast", "tiem.dt=1", "time.dt="}),
+            (Texts{"--set: jet.start: not of the form key=value", "--set: =1: not of the form key=value",
+                   "--set: jet.start = \"steadi\": unknown word; allowed: \"impact\", \"steady\"",
+                   "--set: tiem.dt = 1: unknown key; did you mean time.dt?",
+                   "--set: time.dt = \"\": not a number; allowed: > 0 (s)"}));
+  EXPECT_EQ(mistakes_in("", jet_base, {"time.dt=1\nfoo=2"}).size(), 1u);
+}
+
+/// The text holds every key; some members besides, bit by bit.
+void expect_round_trip(const Config& config) {
+  const Config again = parse_case({{"resolved.toml", config.resolved_text}});
+  EXPECT_EQ(again.resolved_text, config.resolved_text);
+  EXPECT_EQ(again.particles.spacing, config.particles.spacing);
+  EXPECT_EQ(again.time.max_speed, config.time.max_speed);
+  EXPECT_EQ(again.plate.begin, config.plate.begin);
+  EXPECT_EQ(again.plate.end, config.plate.end);
+  EXPECT_EQ(again.fluid.gravity, config.fluid.gravity);
+  EXPECT_EQ(again.tank.size, config.tank.size);
+  EXPECT_EQ(again.name, config.name);
+  EXPECT_EQ(again.output.directory, config.output.directory);
+}
+
+TEST(Config, TheResolvedTextReadsBackToTheSameCase) {
+  expect_round_trip(parse(""));
+  expect_round_trip(parse("fluid.gravity = [-0.0, -9.80665]", tank_base));
+  expect_round_trip(parse("name = \"sh\\\"e\\\\ar \\n \\u00e9\"\nkernel.radius = 2.1000000000000001", box_base));
+  const double odd = 0.1 + 0.2;
+  const Config config = parse("", jet_base, {"fluid.density=0.30000000000000004"});
+  EXPECT_EQ(config.fluid.density, odd);
+  EXPECT_EQ(parse_case({{"r", config.resolved_text}}).fluid.density, odd);
+  EXPECT_TRUE(
+      std::signbit(parse_case({{"r", parse("fluid.gravity = [-0.0, 0]", tank_base).resolved_text}}).fluid.gravity[0]));
+}
+
+TEST(Config, TheResolvedTextHasNoKeysOfOtherGeometries) {
+  const std::string text = parse("", tank_base).resolved_text;
+  EXPECT_EQ(text.find("[jet]"), text.npos);
+  EXPECT_EQ(text.find("[periodic_box]"), text.npos);
+  EXPECT_NE(text.find("[tank]\nsize = [0.2, 0.3]\nfluid_height = 0.2\n"), text.npos);
+}
+
+TEST(Config, DescribeListsEveryKey) {
+  const std::string text = describe_keys();
+  for (const NamedText& base : {jet_base, tank_base, box_base}) {
+    std::istringstream lines(parse("", base).resolved_text);
+    std::string table;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with('[')) table = line.substr(1, line.size() - 2) + ".";
+      if (const auto equals = line.find(" = "); equals != line.npos) {
+        EXPECT_NE(text.find("  " + table + line.substr(0, equals) + " "), text.npos) << table << line;
+      }
+    }
+  }
+  EXPECT_NE(text.find("(0, 90] (deg); required"), text.npos);
+  EXPECT_NE(text.find("default \"non_singular\""), text.npos);
+  EXPECT_NE(text.find("include = "), text.npos);
+}
+
+TEST_F(CaseFiles, IncludedFilesAreDefaults) {
+  write("common/all.toml", jet_base.second + "pressure.gamma = 0.3\n[collision]\ndistance = 0.3\nrestitution = 0.3");
+  write("common/jet.toml", "include = \"all.toml\"\n[collision]\ndistance = 0.4\nrestitution = 0.4");
+  const std::string path = write("case.toml", "include = \"common/jet.toml\"\ncollision.distance = 0.5");
+  const std::vector<NamedText> files = load_case_files(path);
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0].first, path);
+  const Config config = parse_case(files);
+  EXPECT_EQ(config.collision.distance, 0.5);
+  EXPECT_EQ(config.collision.restitution, 0.4);
+  EXPECT_EQ(config.pressure.gamma, 0.3);
+}
+
+TEST_F(CaseFiles, MissingFilesAreMistakes) {
+  const std::string missing = path("nothing.toml");
+  EXPECT_EQ(mistakes([&] { load_case_files(missing); }),
+            Texts{missing + ": cannot read " + missing + ": No such file or directory"});
+  EXPECT_EQ(mistakes([&] { load_case_files(directory_); }),
+            Texts{directory_.string() + ": cannot read " + directory_.string() + ": is a directory"});
+}
+
+TEST_F(CaseFiles, AMissingIncludeComesWithTheOtherMistakes) {
+  const std::string file = write("case.toml", "time.dt = -1\ninclude = \"nothing.toml\"\nfoo.bar = 1");
+  EXPECT_EQ(mistakes([&] { load_case_files(file); }), (Texts{file + ":1: time.dt = -1: out of range; allowed: > 0 (s)",
+                                                             file + ":2: include = \"nothing.toml\": cannot read " +
+                                                                 path("nothing.toml") + ": No such file or directory",
+                                                             file + ":3: foo.bar = 1: unknown key"}));
+}
+
+TEST_F(CaseFiles, IncludesInACircleAreMistakes) {
+  const std::string one = write("one.toml", "include = \"sub/two.toml\"");
+  const std::string two = write("sub/two.toml", "\ninclude = \"../one.toml\"");
+  EXPECT_EQ(mistakes([&] { load_case_files(one); }),
+            Texts{two + ":2: include = \"../one.toml\": the files include each other in a circle"});
+}
+
+TEST_F(CaseFiles, IncludeIsAString) {
+  const std::string file = write("case.toml", "include = 3\n" + jet_base.second);
+  EXPECT_EQ(mistakes([&] { parse_case(load_case_files(file)); }),
+            Texts{file + ":1: include = 3: not a string; allowed: a file"});
+}
+
+TEST_F(CaseFiles, FilesThatAreNotTomlAreLeftToParseCase) {
+  const std::string file = write("case.toml", "time.dt = \n");
+  EXPECT_TRUE(mistakes([&] { parse_case(load_case_files(file)); }).at(0).starts_with(file + ":1: not TOML: "));
+}
+
+TEST_F(CaseFiles, ChecksThatTheOutputDirectoryIsWritable) {
+  check_writable(path("a/b"));
+  EXPECT_TRUE(fs::is_directory(path("a/b")));
+  EXPECT_TRUE(fs::is_empty(path("a/b")));
+  const std::string file = write("file", "");
+  for (const std::string& directory : {file, file + "/below"}) {
+    const Texts found = mistakes([&] { check_writable(directory); });
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0], "output.directory = \"" + directory + "\": cannot write there: Not a directory");
+  }
+}
+
+TEST(Config, ShippedCasesAreSound) {
+  const fs::path input = fs::path(__FILE__).parent_path() / "../../input";
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(input)) {
+    if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "common") continue;
+    const Texts found = mistakes([&] {
+      const Config config = parse_case(load_case_files(entry.path()));
+      EXPECT_EQ(config.name, entry.path().stem());
+      expect_round_trip(config);
+    });
+    EXPECT_EQ(found, Texts{}) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 16);
+}
+
+TEST(Config, ThePapersCasesAreThoseOfItsTables) {
+  const fs::path paper = fs::path(__FILE__).parent_path() / "../../input/paper";
+  const auto check = [&](const std::string& name, double gamma, KernelType kernel) {
+    for (const int angle : {30, 60}) {
+      const Config c = parse_case(load_case_files(paper / ("jet" + std::to_string(angle) + "-" + name + ".toml")));
+      EXPECT_EQ(c.pressure.gamma, gamma);
+      EXPECT_EQ(c.kernel.type, kernel);
+      EXPECT_EQ(c.jet.angle, angle);
+      EXPECT_NEAR(c.jet.width / c.particles.spacing, 80.0, 1e-9);
+      EXPECT_EQ(c.time.dt, 2e-4);
+    }
+  };
+  check("A1", 1.0, KernelType::non_singular);
+  check("A2", 0.01, KernelType::non_singular);
+  check("A2-printed", 0.99, KernelType::non_singular);
+  check("A3", 0.0, KernelType::non_singular);
+  check("B1", 0.01, KernelType::singular);
+  check("B2", 0.01, KernelType::non_singular);
+}
+
+}  // namespace
+}  // namespace impinge
