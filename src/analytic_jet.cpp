@@ -15,7 +15,11 @@ using Complex = std::complex<double>;
 constexpr double outline_reach = 32.0;
 constexpr double outline_step = 0.25;
 
+// Largest |tau| in use: e^-tau is still a normal number.
+constexpr double tau_limit = 690.0;
+
 double softplus(double tau) { return tau > 0.0 ? tau + std::log1p(std::exp(-tau)) : std::log1p(std::exp(tau)); }
+double inverse_softplus(double k) { return k > 40.0 ? k : std::log(std::expm1(k)); }
 
 Complex to_complex(const Vec<2>& v) { return {v[0], v[1]}; }
 Vec<2> to_vec(Complex z) { return {{z.real(), z.imag()}}; }
@@ -100,32 +104,40 @@ Vec<2> AnalyticJet::surface_point(double theta) const {
 std::vector<Vec<2>> AnalyticJet::surface(Side side, double sheet_length, double jet_length, double spacing) const {
   if (!(spacing > 0.0)) throw std::invalid_argument("analytic jet: the spacing of a surface must be positive");
   const auto at = [&](double tau) { return surface_at(side, softplus(tau)); };
-  const auto tau_of = [&](double theta) {
-    const double k = surface_parameter(side, theta);
-    return k > 40.0 ? k : std::log(std::expm1(k));
-  };
-  constexpr double far = 690.0;
   const double sign = side == Side::h1 ? 1.0 : -1.0;
 
-  // Downstream of the point where the surface is vertical |x| grows steadily, upstream of the point where it is
-  // normal to the jet the distance along the axis does. On the h1 side both hold everywhere.
-  const bool turns = side == Side::h2;
-  const double vertical = turns && angle_ < 0.5 * pi ? std::min(tau_of(0.5 * pi), far) : far;
-  const double normal = turns && angle_ < 0.5 * pi ? tau_of(angle_ + 0.5 * pi) : -far;
-  const double first = bisect([&](double tau) { return sheet_length - sign * at(tau)[0]; }, vertical, -far);
+  // |x| grows steadily downstream of the foremost point, the distance along the axis upstream of the point where
+  // the surface is normal to the jet.
+  const double first =
+      bisect([&](double tau) { return sheet_length - sign * at(tau)[0]; }, foremost_tau(side), -tau_limit);
+  const double normal =
+      side == Side::h2 && angle_ < 0.5 * pi ? inverse_softplus(surface_parameter(side, angle_ + 0.5 * pi)) : -tau_limit;
   const double foot = axis_position();
   const double last = bisect(
       [&](double tau) {
         const Vec<2> p = at(tau);
         return jet_length + (p[0] - foot) * cos_ - p[1] * sin_;
       },
-      normal, far);
+      normal, tau_limit);
 
   const double length_per_tau = std::max(width_, 2.0 * sheet_thickness(side)) / pi;
   const int segments = std::max(1, static_cast<int>(std::ceil((last - first) * length_per_tau / spacing)));
   std::vector<Vec<2>> line;
   for (int i = 0; i <= segments; ++i) line.push_back(at(first + (last - first) * i / segments));
   return line;
+}
+
+std::optional<AnalyticJet::Film> AnalyticJet::film(double x) const {
+  const Side side = x > 0.0 ? Side::h1 : Side::h2;
+  const double sign = side == Side::h1 ? 1.0 : -1.0;
+  const auto at = [&](double tau) { return surface_at(side, softplus(tau)); };
+  const auto beyond = [&](double tau) { return sign * (at(tau)[0] - x); };
+  const double foremost = foremost_tau(side);
+  if (beyond(foremost) >= 0.0) return std::nullopt;
+  Film film{at(bisect(beyond, -tau_limit, foremost))[1], std::numeric_limits<double>::infinity()};
+  if (film.top > width_) return std::nullopt;
+  if (beyond(tau_limit) > 0.0) film.ceiling = at(bisect(beyond, tau_limit, foremost))[1];
+  return film;
 }
 
 Vec<2> AnalyticJet::position(Complex zeta) const { return to_vec(position(nearest_end(zeta))); }
@@ -313,6 +325,12 @@ Vec<2> AnalyticJet::surface_at(Side side, double k, Vec<2>* velocity) const {
 double AnalyticJet::surface_parameter(Side side, double theta) const {
   const double ratio = std::tan(0.5 * theta) / std::tan(0.5 * angle_);
   return 2.0 * std::atanh(side == Side::h1 ? ratio : 1.0 / ratio);
+}
+
+/// tau where the surface comes closest to the other sheet's side: where it is vertical, in the jet if nowhere.
+double AnalyticJet::foremost_tau(Side side) const {
+  if (side == Side::h1 || angle_ >= 0.5 * pi) return tau_limit;
+  return std::min(inverse_softplus(surface_parameter(side, 0.5 * pi)), tau_limit);
 }
 
 /// Both surfaces rise monotonically from their sheet into the jet, so each has one x per height.

@@ -38,6 +38,12 @@ class AnalyticJet {
     double depth;     ///< distance of the given point below the free surface [m]; negative outside
   };
 
+  /// The sheet above a point of the plate.
+  struct Film {
+    double top;      ///< height of the sheet's surface [m]
+    double ceiling;  ///< height of the underside of the jet that passes over the sheet [m]; infinite without one
+  };
+
   /// Width H [m], speed U [m/s], density [kg/m^3], angle a between jet and plate [rad], 0 < a <= pi/2.
   /// Throws std::invalid_argument.
   AnalyticJet(double width, double speed, double density, double angle);
@@ -83,6 +89,10 @@ class AnalyticJet {
   /// jet at jet_length from the plate along the axis. Neighbouring points are at most `spacing` apart, closer
   /// where the surface bends.
   std::vector<Vec<2>> surface(Side side, double sheet_length, double jet_length, double spacing) const;
+
+  /// The sheet above the plate at x; nothing where there is none, only the jet (0 >= x > foremost point of h2's
+  /// surface, or top > H).
+  std::optional<Film> film(double x) const;
 
   /// Whether a point lies in the fluid or on its boundary. Closed form.
   bool contains(const Vec<2>& point) const { return point[1] >= 0.0 && below_surface(point); }
@@ -132,6 +142,7 @@ class AnalyticJet {
   /// proportional to the length both in the sheet (tau -> -inf) and in the jet (tau -> inf).
   Vec<2> surface_at(Side side, double k, Vec<2>* velocity = nullptr) const;
   double surface_parameter(Side side, double theta) const;
+  double foremost_tau(Side side) const;
   bool below_surface(const Vec<2>& point) const;
 
   double width_, speed_, density_, angle_, sin_, cos_;

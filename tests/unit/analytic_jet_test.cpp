@@ -158,6 +158,27 @@ TEST_P(AnalyticJetAngles, SurfaceLinesReachTheirEndsAndTheFarThickness) {
   EXPECT_NEAR(jet.nearest_surface({{-40.0 * width, 0.0}}).depth, jet.sheet_thickness(Side::h2), 1e-9);
 }
 
+TEST_P(AnalyticJetAngles, FilmLiesBetweenPlateAndGap) {
+  const double small = 1e-7 * width;
+  int found = 0, under_jet = 0;
+  for (double x = -6.0 * width; x < 6.0 * width; x += 0.05 * width) {
+    const auto film = jet.film(x);
+    if (!film) continue;
+    ++found;
+    EXPECT_TRUE(jet.contains({{x, film->top - small}}));
+    EXPECT_FALSE(jet.contains({{x, film->top + small}}));
+    if (std::isinf(film->ceiling)) continue;
+    ++under_jet;
+    EXPECT_FALSE(jet.contains({{x, film->ceiling - small}}));
+    EXPECT_TRUE(jet.contains({{x, film->ceiling + small}}));
+  }
+  EXPECT_GT(found, 150);
+  EXPECT_EQ(under_jet > 50, GetParam() < 90.0);
+  EXPECT_FALSE(jet.film(0.0));
+  EXPECT_NEAR(jet.film(8.0 * width)->top, jet.sheet_thickness(Side::h1), 1e-6 * width);
+  EXPECT_NEAR(jet.film(-8.0 * width)->top, jet.sheet_thickness(Side::h2), 1e-6 * width);
+}
+
 TEST_P(AnalyticJetAngles, PointsOutsideHaveNoState) {
   const double thick = jet.sheet_thickness(Side::h1), thin = jet.sheet_thickness(Side::h2);
   EXPECT_FALSE(jet.state({{0.3 * width, -1e-9}}));
