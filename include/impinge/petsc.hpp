@@ -6,7 +6,9 @@
 
 #include <source_location>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace impinge {
 
@@ -18,6 +20,22 @@ class PetscFailure : public std::runtime_error {
 
 /// Throws PetscFailure, with the caller's place and PETSc's text, unless the code is 0. Not collective.
 void check(PetscErrorCode code, std::source_location place = std::source_location::current());
+
+/// PETSc between construction and destruction, with these command-line words. PETSc's own error traces are silenced;
+/// check() gives its message. Collective.
+class PetscSession {
+ public:
+  PetscSession(const char* program, const std::vector<std::string>& arguments);
+  ~PetscSession();
+  PetscSession(const PetscSession&) = delete;
+  PetscSession& operator=(const PetscSession&) = delete;
+};
+
+/// Names of the options in the database that nothing has asked for yet.
+std::vector<std::string> unused_petsc_options();
+
+/// PETSc's version, "3.18.5".
+std::string petsc_version();
 
 /// Owns one PETSc object; destroy(&object) is PETSc's own function.
 template <class Object, PetscErrorCode (*destroy)(Object*)>
