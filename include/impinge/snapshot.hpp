@@ -1,0 +1,51 @@
+#pragma once
+// One HDF5 file per snapshot, in the VTKHDF layout (UnstructuredGrid of vertices, one piece per rank), so that ParaView
+// opens it as it is.
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+#include "impinge/output_error.hpp"
+#include "impinge/particles.hpp"
+
+namespace impinge {
+
+/// The root attributes of a snapshot.
+struct SnapshotHeader {
+  int dimension = 2;
+  std::int64_t step = 0;
+  double time = 0.0;          ///< [s]
+  double dt = 0.0;            ///< of the last step [s]
+  double window_begin = 0.0;  ///< the wall pressure is averaged from here ... [s]
+  double window_end = 0.0;    ///< ... to here; equal: no average yet [s]
+  std::string status;         ///< "running", "finished" or "failed"
+  std::string message;        ///< why it failed
+  std::string case_text;      ///< the resolved case, TOML
+  std::string code_version;   ///< set by the reader; the writer puts in its own
+};
+
+/// `<directory>/<name>_<step, 8 digits>.vtkhdf`.
+std::string snapshot_path(const std::string& directory, const std::string& name, std::int64_t step);
+
+/// Snapshots in a directory, ordered by step. Files of other names are passed over. Throws OutputError where the
+/// directory cannot be read. Not collective.
+std::vector<std::string> list_snapshots(const std::string& directory);
+
+/// Writes the owned particles of all ranks, the time-averaged pressure of the wall (/wall) and the header. The file
+/// appears under its name when it is complete. Collective; throws OutputError on all ranks.
+template <int Dim>
+void write_snapshot(MPI_Comm comm, const std::string& path, const Particles<Dim>& particles,
+                    const SnapshotHeader& header);
+
+/// Reads the header alone. Not collective; throws OutputError.
+SnapshotHeader read_header(const std::string& path);
+
+/// Reads the header and this rank's share of the particles: equal runs in the order of the file, all of them owned; all
+/// fields but `rank` come back. Throws OutputError on all ranks, also where the file's dimension is not Dim.
+/// Collective.
+template <int Dim>
+SnapshotHeader read_snapshot(MPI_Comm comm, const std::string& path, Particles<Dim>& particles);
+
+}  // namespace impinge
