@@ -35,8 +35,8 @@ JetGeometry::JetGeometry(const Config& config)
   film_rows_ = start_ == JetStart::steady ? std::lround(steady_seam_ / dp) : 0;
 
   last_row_ = -(buffer_rows_ - 0.5) * dp;
-  next_id_ = wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ +
-             film_rows_ * wall_columns_;
+  next_id_ =
+      wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ + film_rows_ * wall_columns_;
 
   // Everything the plate, the ghosts and the buffer occupy, and room above for splash.
   bounds_ = {{{plate_begin_, -wall_layers * dp}}, {{plate_end_, 0.0}}};
@@ -88,7 +88,7 @@ void JetGeometry::fill(int rank, int ranks, Particles<2>& particles) const {
 
 ParticleRecord<2> JetGeometry::steady_fluid(const Vec<2>& position, std::int64_t id) const {
   const auto state = jet_.state(position);
-  return {position, state ? state->velocity : inlet_velocity(), state ? state->pressure : 0.0, 0.0, id,
+  return {position,           state ? state->velocity : inlet_velocity(), state ? state->pressure : 0.0, 0.0, id,
           ParticleType::fluid};
 }
 
@@ -129,6 +129,8 @@ BoundaryFlow JetGeometry::move_boundaries(double dt, Particles<2>& particles,
   return flow;
 }
 
-bool JetGeometry::on_floor(const Vec<2>& position) const { return std::abs(position[1] + 0.5 * spacing_) < 0.1 * spacing_; }
+bool JetGeometry::on_floor(const Vec<2>& position) const {
+  return std::abs(position[1] + 0.5 * spacing_) < 0.1 * spacing_;
+}
 
 }  // namespace impinge

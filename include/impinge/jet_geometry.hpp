@@ -43,7 +43,7 @@ class JetGeometry final : public Geometry<2> {
   std::int64_t wall_columns_;
   std::int64_t column_rows_;
   std::int64_t film_rows_;
-  double last_row_;          // s of the hindmost buffer row [m]
+  double last_row_;  // s of the hindmost buffer row [m]
   std::int64_t next_id_;
 };
 
