@@ -1,7 +1,6 @@
 #include "impinge/progress.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -16,39 +15,27 @@ std::string duration_text(double seconds) {
 }
 
 Progress::Progress(double begin, double end, bool shown)
-    : end_(end),
-      shown_(shown),
-      terminal_(isatty(STDOUT_FILENO) != 0),
-      last_time_(Clock::now()),
-      last_simulated_(begin) {}
-
-Progress::~Progress() { interrupt(); }
+    : end_(end), shown_(shown), start_(Clock::now()), last_time_(start_), last_simulated_(begin) {}
 
 void Progress::update(const StepReport& report) {
   if (!shown_) return;
-  const double elapsed = std::chrono::duration<double>(Clock::now() - last_time_).count();
-  const double interval = terminal_ ? 0.5 : 10.0;
-  if (elapsed < interval && report.time < end_) return;
+  const auto now = Clock::now();
+  const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
+  const double elapsed = seconds(last_time_);
+  if (elapsed < std::max(5.0, 0.01 * seconds(start_)) && report.time < end_) return;
   const double rate = (report.time - last_simulated_) / elapsed;
-  rate_ = rate_ == 0.0 ? rate : 0.7 * rate_ + 0.3 * rate;
-  last_time_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(elapsed));
+  rate_ = rate_ == 0.0 ? rate : 0.5 * (rate_ + rate);
+  last_time_ = now;
   last_simulated_ = report.time;
-  const std::string text = line(report, end_, (end_ - report.time) / rate_);
-  fmt::print("{}{}{}", terminal_ ? "\r\x1b[K" : "", text, terminal_ ? "" : "\n");
+  fmt::print("{}\n", line(report, end_, std::max((end_ - report.time) / rate_, 0.0)));
   std::fflush(stdout);
-  open_ = terminal_;
-}
-
-void Progress::interrupt() {
-  if (open_) fmt::print("\n");
-  open_ = false;
 }
 
 std::string Progress::line(const StepReport& report, double end, double seconds_left) {
   return fmt::format("step {}  t {:.4f}/{:.4f} s ({:.0f} %)  dt {:.2e} s ({})  {} particles  {} iterations  {} left",
                      report.step, report.time, end, 100.0 * report.time / end, report.dt,
                      report.limit == StepLimit::cfl ? "CFL" : "case", report.particles, report.pressure.iterations,
-                     duration_text(std::max(seconds_left, 0.0)));
+                     duration_text(seconds_left));
 }
 
 }  // namespace impinge

@@ -101,7 +101,6 @@ void run(MPI_Comm comm, const Config& config) {
     try {
       simulation.step();
     } catch (const SolveError& error) {
-      progress.interrupt();
       output.record(report, seconds_since(step_start));
       const std::string path = output.save(simulation, "failed", error.what());
       if (first) fmt::print("the last state is in {}\n", path);
@@ -120,7 +119,6 @@ void run(MPI_Comm comm, const Config& config) {
       output_time = next_output(report.time, config.output.interval);
     }
   }
-  progress.interrupt();
   if (first)
     fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step,
                duration_text(seconds_since(start)), report.in - report.out - report.fluid);

@@ -8,22 +8,16 @@
 
 namespace impinge {
 
-/// Tells on the terminal how far a run is: the line renews itself there; in a file a new one is added now and then.
+/// Tells now and then how far a run is: every 5 s, and more seldom the longer the run takes.
 class Progress {
  public:
   /// `begin`, `end`: simulated time of the run's start and end [s]. `shown`: false on all ranks but one.
   Progress(double begin, double end, bool shown);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
 
-  /// Shows the step if the last line is old enough, or if it is the last step.
+  /// Prints a line if the last one is old enough, or if this is the last step.
   void update(const StepReport& report);
 
-  /// Begins a new line, so that other text can be printed.
-  void interrupt();
-
-  /// "step 1250  t 1.0000/5.0000 s (20 %)  dt 8.0e-04 s (case)  5123 particles  9 iterations  1 min 02 s left".
+  /// "step 1250  t 1.0000/5.0000 s (20 %)  dt 8.00e-04 s (case)  5123 particles  9 iterations  1 min 02 s left".
   static std::string line(const StepReport& report, double end, double seconds_left);
 
  private:
@@ -31,8 +25,7 @@ class Progress {
 
   double end_;
   bool shown_;
-  bool terminal_;
-  bool open_ = false;  // the cursor stands behind a line that is to be renewed
+  Clock::time_point start_;
   Clock::time_point last_time_;
   double last_simulated_;
   double rate_ = 0.0;  // simulated over wall-clock time, smoothed
