@@ -72,9 +72,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "impinge " IMPINGE_VERSION, "Print the version");
   app.add_option("directory", arguments.directory, "Output directory of the run")->required()->option_text("DIR");
   app.add_option("--from", arguments.selection.from,
-                 "Compare snapshots from this time [s]; default: from the start of the wall-pressure average")
+                 "Compare snapshots from this time [s]. Without either bound: those of the wall-pressure average")
       ->option_text("T");
-  app.add_option("--to", arguments.selection.to, "Compare snapshots to this time [s]")->option_text("T");
+  app.add_option("--to", arguments.selection.to, "Compare snapshots up to this time [s]")->option_text("T");
   app.add_flag("--no-figures", arguments.no_figures, "Draw no figures")->disable_flag_override();
   try {
     app.parse(argc, argv);

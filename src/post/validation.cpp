@@ -173,14 +173,15 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
     span = {selection.from.value_or(headers.front().time), selection.to.value_or(result.last.time)};
   const double tolerance = 1e-9 * config.time.end;
   for (std::size_t k = 0; k < paths.size(); ++k) {
-    if (headers[k].time < span.begin - tolerance || headers[k].time > span.end + tolerance) continue;
+    if (!(headers[k].time >= span.begin - tolerance && headers[k].time <= span.end + tolerance)) continue;
     read_snapshot(MPI_COMM_SELF, paths[k], particles);
     comparison.add_snapshot(particles);
     result.times.push_back(headers[k].time);
   }
   if (result.times.empty())
-    throw InputError({fmt::format("{}: no snapshot between {} s and {} s; the run's are from {} s to {} s", directory,
-                                  span.begin, span.end, headers.front().time, result.last.time)});
+    throw InputError(
+        {fmt::format("{}: no snapshot between {:.6g} s and {:.6g} s; the run's are from {:.6g} s to {:.6g} s",
+                     directory, span.begin, span.end, headers.front().time, result.last.time)});
 
   result.metrics = comparison.metrics();
   result.wall = comparison.wall_profile();
