@@ -599,6 +599,8 @@ void CaseReader::derive_plate() {
 void CaseReader::derive_defaults() {
   if (!given("name")) config_.name = fs::path(files_.front().name).stem();
   if (!given("output.directory")) config_.output.directory = fmt::format("output/{}", config_.name);
+  config_.output.directory_place =
+      given("output.directory") ? entries_.find("output.directory")->second.place.text() : files_.front().name;
   if (!given("output.average_start")) config_.output.average_start = 0.8 * config_.time.end;
   if (!given("time.max_speed")) derive_max_speed();
   if (is(jet)) derive_plate();
@@ -808,9 +810,11 @@ std::string describe_keys() {
   return text;
 }
 
-void check_writable(const std::string& directory) {
+void check_writable(const Config& config) {
+  const std::string& directory = config.output.directory;
   const auto fail = [&](const std::string& reason) {
-    throw InputError({fmt::format("output.directory = {}: cannot write there: {}", in_quotes(directory), reason)});
+    throw InputError({fmt::format("{}: output.directory = {}: cannot write there: {}", config.output.directory_place,
+                                  in_quotes(directory), reason)});
   };
   std::error_code error;
   fs::create_directories(directory, error);

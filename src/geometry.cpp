@@ -62,7 +62,7 @@ class TankGeometry final : public Geometry<Dim> {
         if (axis < Dim - 1) depth = std::max(depth, position[axis] - size_[axis]);
       }
       if (depth == 0.0 && position[Dim - 1] > fluid_height_) return;
-      const ParticleType type = depth == 0.0                 ? ParticleType::fluid
+      const ParticleType type = depth == 0.0               ? ParticleType::fluid
                                 : depth < lattice_.spacing ? ParticleType::wall
                                                            : ParticleType::ghost;
       particles.append({position, {}, 0.0, 0.0, k, type});

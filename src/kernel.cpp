@@ -15,8 +15,7 @@ LatticeSums lattice_sums(KernelType type, double effective_radius) {
   const auto add = [&](const Vec<Dim>& offset) {
     const double r = norm(offset);
     if (r == 0.0 || r >= effective_radius) return;
-    const double weight =
-        with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+    const double weight = with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
     sum += weight;
     second_moment += weight * r * r;
     if (offset[Dim - 1] < 0.0) half_space -= weight * offset[Dim - 1] / r;

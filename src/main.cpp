@@ -8,10 +8,11 @@
 
 #include "impinge/command_line.hpp"
 #include "impinge/config.hpp"
+#include "impinge/output_error.hpp"
+#include "impinge/parallel.hpp"
 #include "impinge/petsc.hpp"
 #include "impinge/run.hpp"
 #include "impinge/simulation.hpp"
-#include "impinge/snapshot.hpp"
 
 namespace {
 

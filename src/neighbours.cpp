@@ -117,7 +117,8 @@ void NeighbourSearch<Dim>::find_pairs(const Particles<Dim>& particles) {
 
 template <int Dim>
 std::size_t NeighbourSearch<Dim>::bytes() const {
-  return near_.bytes() + far_.bytes() + (box_cell_.capacity() + cell_start_.capacity() + entry_.capacity()) * sizeof(int) +
+  return near_.bytes() + far_.bytes() +
+         (box_cell_.capacity() + cell_start_.capacity() + entry_.capacity()) * sizeof(int) +
          entry_position_.capacity() * sizeof(Vec<Dim>);
 }
 

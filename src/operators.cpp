@@ -91,11 +91,11 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
   return change;
 }
 
-#define IMPINGE_INSTANTIATE(Dim)                                                                                      \
-  template double asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                            \
+#define IMPINGE_INSTANTIATE(Dim)                                                                                       \
+  template double asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                             \
   template double divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>, double, int); \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \
-                                           std::span<const ParticleType>, double, int);                               \
+                                           std::span<const ParticleType>, double, int);                                \
   template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \
   template Vec<Dim> collision<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,              \
                                    std::span<const ParticleType>, double, double, double, int);

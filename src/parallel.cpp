@@ -73,6 +73,14 @@ double max_over_ranks(MPI_Comm comm, double value) {
   return value;
 }
 
+std::string broadcast(MPI_Comm comm, std::string text, int root) {
+  auto length = static_cast<std::int64_t>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT64_T, root, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, root, comm);
+  return text;
+}
+
 bool any_rank(MPI_Comm comm, bool value) { return max_over_ranks(comm, value ? 1.0 : 0.0) > 0.0; }
 
 }  // namespace impinge

@@ -24,9 +24,8 @@ std::vector<int> partition_with_metis(const CellGraph& graph, int parts) {
   std::vector<idx_t> vertex_weight(graph.vertex_weight.begin(), graph.vertex_weight.end());
   std::vector<idx_t> edge_weight(graph.edge_weight.begin(), graph.edge_weight.end());
   std::vector<idx_t> part(static_cast<std::size_t>(n), 0);
-  const int code =
-      METIS_PartGraphKway(&n, &constraints, start.data(), neighbour.data(), vertex_weight.data(), nullptr,
-                          edge_weight.data(), &n_parts, nullptr, nullptr, options, &cut, part.data());
+  const int code = METIS_PartGraphKway(&n, &constraints, start.data(), neighbour.data(), vertex_weight.data(), nullptr,
+                                       edge_weight.data(), &n_parts, nullptr, nullptr, options, &cut, part.data());
   if (code != METIS_OK) throw std::runtime_error("METIS could not partition the background cells");
   return {part.begin(), part.end()};
 }

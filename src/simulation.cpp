@@ -135,8 +135,8 @@ template <int Dim>
 void Simulation<Dim>::move_boundaries() {
   const LogStage log(stage(redistributing));
   particles_.resize(particles_.owned);
-  const BoundaryFlow flow = geometry_->move_boundaries(report_.dt, particles_,
-                                                       [&](const Vec<Dim>& position) { return domain_.owns(position); });
+  const BoundaryFlow flow = geometry_->move_boundaries(
+      report_.dt, particles_, [&](const Vec<Dim>& position) { return domain_.owns(position); });
   report_.in += sum_over_ranks(comm_, flow.entered);
   report_.out += sum_over_ranks(comm_, flow.left);
 }
@@ -175,8 +175,8 @@ void Simulation<Dim>::measure_density() {
     const double n = particles_.number_density[self];
     const bool surface =
         n < limits.surface_density * n0 ||
-        (n <= limits.interior_density * n0 && asymmetry<Dim>(search_.near(), particles_.position, n0, i) >
-                                                  limits.asymmetry * near_sums_.surface_asymmetry);
+        (n <= limits.interior_density * n0 &&
+         asymmetry<Dim>(search_.near(), particles_.position, n0, i) > limits.asymmetry * near_sums_.surface_asymmetry);
     particles_.free_surface[self] = surface;
     role_[self] = surface ? PressureRole::zero : PressureRole::unknown;
   }
@@ -226,9 +226,9 @@ void Simulation<Dim>::correct() {
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (moves(particles_.type[self]))
-      velocity_change_[self] = -factor * pressure_gradient<Dim>(search_.near(), particles_.position,
-                                                                particles_.pressure, particles_.type,
-                                                                near_sums_.number_density, i);
+      velocity_change_[self] =
+          -factor * pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure, particles_.type,
+                                           near_sums_.number_density, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];
@@ -243,8 +243,8 @@ void Simulation<Dim>::take_stock() {
   const double mass = config_.fluid.density * std::pow(spacing, Dim);
   const double area = std::pow(spacing, Dim - 1);
   const bool averaging = report_.step > 0 && report_.time > config_.output.average_start;
-  std::array<double, 4> sums{};     // particles, fluid, kinetic energy, floor force
-  std::array<double, 3> maxima{};   // speed squared, pressure, not a number
+  std::array<double, 4> sums{};    // particles, fluid, kinetic energy, floor force
+  std::array<double, 3> maxima{};  // speed squared, pressure, not a number
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     sums[0] += 1.0;
     const double pressure = particles_.pressure[i];

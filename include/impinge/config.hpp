@@ -85,9 +85,10 @@ struct Config {
   } periodic_box;
 
   struct {
-    std::string directory;       ///< default: output/<name>
-    double interval = 0.0;       ///< time between snapshots [s]; 0: first and last only
-    double average_start = 0.0;  ///< start of the wall-pressure average [s]; default: 0.8 time.end
+    std::string directory;        ///< default: output/<name>
+    std::string directory_place;  ///< where it was given, for messages
+    double interval = 0.0;        ///< time between snapshots [s]; 0: first and last only
+    double average_start = 0.0;   ///< start of the wall-pressure average [s]; default: 0.8 time.end
   } output;
 
   struct {
@@ -124,7 +125,7 @@ Config parse_case(const std::vector<NamedText>& files, const std::vector<std::st
 std::string describe_keys();
 
 /// Creates the output directory where it does not exist and tries a file in it. Touches the disk; not collective.
-/// Throws InputError that names output.directory and the reason.
-void check_writable(const std::string& directory);
+/// Throws InputError that names the place of output.directory and the reason.
+void check_writable(const Config& config);
 
 }  // namespace impinge

@@ -72,9 +72,9 @@ class Domain {
   CellGrid<Dim> cells_;
   CellGrid<Dim> fine_;
   Partitioner partitioner_;
-  std::vector<int> owner_;                // rank of each cell
-  std::vector<int> target_start_;         // per cell: range in targets_
-  std::vector<Target> targets_;           // who sees the particles of a cell of this rank
+  std::vector<int> owner_;         // rank of each cell
+  std::vector<int> target_start_;  // per cell: range in targets_
+  std::vector<Target> targets_;    // who sees the particles of a cell of this rank
   double achieved_imbalance_ = 1.0;
   Halo halo_;
   std::vector<Vec<Dim>> halo_shift_;  // per particle sent

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -71,6 +72,9 @@ class Halo {
 double sum_over_ranks(MPI_Comm comm, double value);
 std::int64_t sum_over_ranks(MPI_Comm comm, std::int64_t value);
 double max_over_ranks(MPI_Comm comm, double value);
+
+/// The text of rank `root`. Collective.
+std::string broadcast(MPI_Comm comm, std::string text, int root);
 
 /// True if it is true on any rank. Collective.
 bool any_rank(MPI_Comm comm, bool value);

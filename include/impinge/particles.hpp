@@ -24,12 +24,12 @@ struct ParticleRecord {
 template <int Dim>
 struct Particles {
   int owned = 0;
-  std::vector<Vec<Dim>> position;          ///< [m]
-  std::vector<Vec<Dim>> velocity;          ///< [m/s]
-  std::vector<double> pressure;            ///< [Pa]
-  std::vector<double> pressure_impulse;    ///< integral of p dt over the averaging window [Pa s]; owned entries
-  std::vector<double> number_density;      ///< n [-]; owned entries are valid
-  std::vector<std::int64_t> id;            ///< never used twice in a run
+  std::vector<Vec<Dim>> position;        ///< [m]
+  std::vector<Vec<Dim>> velocity;        ///< [m/s]
+  std::vector<double> pressure;          ///< [Pa]
+  std::vector<double> pressure_impulse;  ///< integral of p dt over the averaging window [Pa s]; owned entries
+  std::vector<double> number_density;    ///< n [-]; owned entries are valid
+  std::vector<std::int64_t> id;          ///< never used twice in a run
   std::vector<ParticleType> type;
   std::vector<std::uint8_t> free_surface;  ///< 1 where p = 0 is imposed by the free-surface criterion
 

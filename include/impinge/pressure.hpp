@@ -22,7 +22,7 @@ enum class PressureRole : std::uint8_t {
 /// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. All views stay
 /// valid until the solve.
 struct PressureEquation {
-  const PairList& far;                ///< pairs and weights of the Laplacian, one row per owned particle
+  const PairList& far;                 ///< pairs and weights of the Laplacian, one row per owned particle
   std::span<const PressureRole> role;  ///< owned and halo
   std::span<const PetscInt> row;       ///< global rows, owned and halo
   std::span<const double> source;      ///< [Pa/m^2], owned

@@ -89,8 +89,8 @@ class Simulation {
 
   MPI_Comm comm_;
   Config config_;
-  LatticeSums near_sums_;  // of the number density's radius
-  LatticeSums far_sums_;   // of the Laplacian's radius
+  LatticeSums near_sums_;    // of the number density's radius
+  LatticeSums far_sums_;     // of the Laplacian's radius
   double laplacian_factor_;  // 2 Dim/(n0 lambda) [1/m^2]
   Vec<Dim> gravity_;
   std::unique_ptr<Geometry<Dim>> geometry_;

@@ -29,9 +29,9 @@ struct SnapshotHeader {
 /// `<directory>/<name>_<step, 8 digits>.vtkhdf`.
 std::string snapshot_path(const std::string& directory, const std::string& name, std::int64_t step);
 
-/// Snapshots in a directory, ordered by step. Files of other names are passed over. Throws OutputError where the
-/// directory cannot be read. Not collective.
-std::vector<std::string> list_snapshots(const std::string& directory);
+/// Snapshots in a directory, ordered by step: those of the case `name`, or all if it is empty. Throws OutputError where
+/// the directory cannot be read. Not collective.
+std::vector<std::string> list_snapshots(const std::string& directory, const std::string& name = "");
 
 /// Writes the owned particles of all ranks, the time-averaged pressure of the wall (/wall) and the header. The file
 /// appears under its name when it is complete. Collective; throws OutputError on all ranks.

@@ -450,14 +450,16 @@ TEST_F(CaseFiles, FilesThatAreNotTomlAreLeftToParseCase) {
 }
 
 TEST_F(CaseFiles, ChecksThatTheOutputDirectoryIsWritable) {
-  check_writable(path("a/b"));
+  Config config = parse("output.directory = '" + path("a/b") + "'");
+  check_writable(config);
   EXPECT_TRUE(fs::is_directory(path("a/b")));
   EXPECT_TRUE(fs::is_empty(path("a/b")));
   const std::string file = write("file", "");
   for (const std::string& directory : {file, file + "/below"}) {
-    const Texts found = mistakes([&] { check_writable(directory); });
+    config = parse("\noutput.directory = '" + directory + "'");
+    const Texts found = mistakes([&] { check_writable(config); });
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0], "output.directory = \"" + directory + "\": cannot write there: Not a directory");
+    EXPECT_EQ(found[0], "case.toml:2: output.directory = \"" + directory + "\": cannot write there: Not a directory");
   }
 }
 

@@ -1,0 +1,54 @@
+#pragma once
+// The files of a run: snapshots, the time series for ParaView and VisIt, the history.
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "impinge/simulation.hpp"
+#include "impinge/snapshot.hpp"
+
+namespace impinge {
+
+/// Writes below the case's output directory:
+///   <name>_<step>.vtkhdf   snapshots
+///   <name>.xmf             XDMF, the snapshots as a time series
+///   <name>_history.csv     one line per step
+/// Snapshots of an earlier run of the same name are removed at the start.
+class Output {
+ public:
+  /// Collective. Throws InputError where the directory is not writable, OutputError.
+  Output(MPI_Comm comm, const Config& config);
+
+  /// How many files of an earlier run were removed.
+  int removed() const { return removed_; }
+
+  /// Appends a line to the history. `seconds`: wall-clock time of the step. A failure is told by the next save. Not
+  /// collective.
+  void record(const StepReport& report, double seconds);
+
+  /// Writes a snapshot and puts it into the time series. Returns its path. Collective; throws OutputError.
+  template <int Dim>
+  std::string save(const Simulation<Dim>& simulation, const std::string& status, const std::string& message = "");
+
+ private:
+  struct SeriesEntry {
+    std::string file;
+    double time;
+    std::int64_t particles;
+  };
+
+  std::string history_path() const;
+  std::string history_failure() const;  // nothing if all is well
+  std::string write_series() const;     // likewise
+
+  MPI_Comm comm_;
+  std::string directory_;
+  std::string name_;
+  std::string case_text_;
+  int removed_ = 0;
+  std::ofstream history_;  // open on rank 0
+  std::vector<SeriesEntry> series_;
+};
+
+}  // namespace impinge

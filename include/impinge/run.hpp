@@ -1,0 +1,23 @@
+#pragma once
+// What the program `impinge` does with a case.
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+#include "impinge/config.hpp"
+
+namespace impinge {
+
+/// load_case_files on rank 0, the texts on all ranks. Collective; throws InputError on all ranks.
+std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::string& path);
+
+/// Sets the case up without running it and prints particles, memory, balance and the limits of dt. Collective.
+void check_case(MPI_Comm comm, const Config& config);
+
+/// Runs the case to its end, with progress on the terminal and files in the output directory. Collective. Throws
+/// SolveError after the last state has been written, InputError also for PETSc options that nothing uses, OutputError.
+void run_case(MPI_Comm comm, const Config& config);
+
+}  // namespace impinge

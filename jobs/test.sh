@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test, whole runs on 2 ranks among them.
+# Usage: jobs/test.sh [ctest options, e.g. -L unit]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. jobs/common.sh
+
+set_up
+ctest --test-dir build/release --output-on-failure "$@"

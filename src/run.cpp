@@ -1,0 +1,156 @@
+#include "impinge/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "impinge/output.hpp"
+#include "impinge/parallel.hpp"
+#include "impinge/progress.hpp"
+#include "impinge/simulation.hpp"
+
+namespace impinge {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Runs use(std::integral_constant<int, Dim>) for the case's dimension.
+template <class Use>
+void with_dimension(const Config& config, Use&& use) {
+  if (config.dimension == 3) {
+    use(std::integral_constant<int, 3>{});
+  } else {
+    use(std::integral_constant<int, 2>{});
+  }
+}
+
+/// Throws InputError if the command line has PETSc options that nothing has asked for.
+template <int Dim>
+void refuse_unused_options(const Simulation<Dim>& simulation) {
+  const auto& ours = simulation.pressure_solver().default_options();
+  std::vector<std::string> mistakes;
+  for (const std::string& option : unused_petsc_options())
+    if (std::ranges::find(ours, option) == ours.end())
+      mistakes.push_back(fmt::format("command line: {}: no part of PETSc or Impinge uses this option", option));
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+}
+
+template <int Dim>
+void check(MPI_Comm comm, const Config& config) {
+  const Simulation<Dim> simulation(comm, config);
+  refuse_unused_options(simulation);
+  const StepReport& report = simulation.report();
+  std::array<std::int64_t, 4> counts{};
+  const Particles<Dim>& particles = simulation.particles();
+  for (int i = 0; i < particles.owned; ++i)
+    ++counts[static_cast<std::size_t>(particles.type[static_cast<std::size_t>(i)])];
+  for (std::int64_t& count : counts) count = sum_over_ranks(comm, count);
+  const double bytes = sum_over_ranks(comm, static_cast<double>(simulation.bytes()));
+  const double most = max_over_ranks(comm, static_cast<double>(simulation.bytes()));
+  const double imbalance = simulation.imbalance();
+  if (rank_of(comm) > 0) return;
+  const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
+  fmt::print("case        {}, {} dimensions: all keys are in range\n", config.name, config.dimension);
+  fmt::print("particles   {}: {} fluid, {} inlet, {} wall, {} ghost\n", report.particles, counts[0], counts[1],
+             counts[2], counts[3]);
+  fmt::print("ranks       {}, largest over mean work {:.3f}\n", ranks_of(comm), imbalance);
+  fmt::print(
+      "memory      {:.1f} MB ({:.0f} bytes per particle), {:.1f} MB on the fullest rank; preconditioner and "
+      "libraries come on top\n",
+      bytes / 1e6, bytes / static_cast<double>(report.particles), most / 1e6);
+  fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
+  if (std::isfinite(cfl_dt))
+    fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
+  fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
+             std::ceil(config.time.end / std::min(config.time.dt, cfl_dt)), config.time.end);
+  fmt::print("output      {}\n", config.output.directory);
+}
+
+/// Time of the next snapshot, a multiple of the interval after `time`.
+double next_output(double time, double interval) {
+  return interval > 0.0 ? (std::floor(time / interval + 1e-9) + 1.0) * interval : HUGE_VAL;
+}
+
+template <int Dim>
+void run(MPI_Comm comm, const Config& config) {
+  const bool first = rank_of(comm) == 0;
+  const auto start = Clock::now();
+  Output output(comm, config);
+  if (first && output.removed() > 0)
+    fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
+  Simulation<Dim> simulation(comm, config);
+  const StepReport& report = simulation.report();
+  if (first)
+    fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
+               config.name, config.time.end, report.particles, ranks_of(comm), config.output.directory);
+  output.save(simulation, "running");
+
+  // Steps that end within this of an instant have reached it.
+  const double tolerance = 1e-9 * config.time.end;
+  const auto finished = [&] { return report.time >= config.time.end - tolerance; };
+  double output_time = next_output(report.time, config.output.interval);
+  bool options_checked = false;
+  Progress progress(report.time, config.time.end, first);
+  while (!finished()) {
+    const auto step_start = Clock::now();
+    try {
+      simulation.step();
+    } catch (const SolveError& error) {
+      output.record(report, seconds_since(step_start));
+      const std::string path = output.save(simulation, "failed", error.what());
+      if (first) fmt::print("the last state is in {}\n", path);
+      throw;
+    }
+    output.record(report, seconds_since(step_start));
+    if (!options_checked && (report.pressure.iterations > 0 || finished())) {
+      refuse_unused_options(simulation);
+      options_checked = true;
+    }
+    progress.update(report);
+    if (finished()) {
+      output.save(simulation, "finished");
+    } else if (report.time >= output_time - tolerance) {
+      output.save(simulation, "running");
+      output_time = next_output(report.time, config.output.interval);
+    }
+  }
+  if (first)
+    fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step,
+               duration_text(seconds_since(start)), report.in - report.out - report.fluid);
+}
+
+}  // namespace
+
+std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::string& path) {
+  std::vector<NamedText> files;
+  std::vector<std::string> mistakes;
+  if (rank_of(comm) == 0) {
+    try {
+      files = load_case_files(path);
+    } catch (const InputError& error) {
+      mistakes = error.mistakes();
+    }
+  }
+  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
+  files.resize(static_cast<std::size_t>(sum_over_ranks(comm, static_cast<std::int64_t>(files.size()))));
+  for (auto& [name, text] : files) {
+    name = broadcast(comm, name, 0);
+    text = broadcast(comm, text, 0);
+  }
+  return files;
+}
+
+void check_case(MPI_Comm comm, const Config& config) {
+  with_dimension(config, [&](auto dimension) { check<dimension()>(comm, config); });
+}
+
+void run_case(MPI_Comm comm, const Config& config) {
+  with_dimension(config, [&](auto dimension) { run<dimension()>(comm, config); });
+}
+
+}  // namespace impinge

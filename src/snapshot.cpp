@@ -1,0 +1,486 @@
+#include "impinge/snapshot.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+#include <regex>
+#include <utility>
+
+#include "impinge/parallel.hpp"
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int format_version = 1;
+constexpr const char* point_data = "/VTKHDF/PointData/";
+
+/// An HDF5 object, closed on destruction.
+template <herr_t (*close)(hid_t)>
+class Hdf5 {
+ public:
+  Hdf5(hid_t id = H5I_INVALID_HID) : id_(id) {}
+  Hdf5(Hdf5&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+  Hdf5& operator=(Hdf5&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Hdf5() {
+    if (id_ >= 0) close(id_);
+  }
+  operator hid_t() const { return id_; }
+  hid_t release() { return std::exchange(id_, H5I_INVALID_HID); }
+
+ private:
+  hid_t id_;
+};
+
+using File = Hdf5<H5Fclose>;
+using Group = Hdf5<H5Gclose>;
+using Dataset = Hdf5<H5Dclose>;
+using Dataspace = Hdf5<H5Sclose>;
+using Datatype = Hdf5<H5Tclose>;
+using Attribute = Hdf5<H5Aclose>;
+using Properties = Hdf5<H5Pclose>;
+
+template <class T>
+hid_t native_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+}
+
+/// While it lives, HDF5 prints no error traces.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5open();
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// The deepest entry of HDF5's error stack.
+std::string hdf5_reason() {
+  std::string reason;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned depth, const H5E_error2_t* error, void* text) -> herr_t {
+        if (depth == 0 && error->desc) *static_cast<std::string*>(text) = error->desc;
+        return 0;
+      },
+      &reason);
+  return reason.empty() ? "HDF5 failed" : reason;
+}
+
+/// Throws OutputError on all ranks, with the message of the first rank that has one. Collective.
+void throw_together(MPI_Comm comm, const std::string& own_message) {
+  const int ranks = ranks_of(comm);
+  int first = own_message.empty() ? ranks : rank_of(comm);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+  if (first == ranks) return;
+  throw OutputError(broadcast(comm, own_message, first));
+}
+
+/// A file that all ranks write. A failed call is kept until finish: a rank that left early would hang the others.
+class Writer {
+ public:
+  Writer(MPI_Comm comm, std::string path) : comm_(comm), path_(std::move(path)), partial_(path_ + ".partial") {
+    const Properties access(H5Pcreate(H5P_FILE_ACCESS));
+    keep(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL));
+    file_ = File(keep(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)));
+    transfer_ = Properties(H5Pcreate(H5P_DATASET_XFER));
+    keep(H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE));
+  }
+
+  void create_group(const std::string& name) {
+    const Group group(keep(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
+  }
+
+  template <class T>
+  void attribute(const std::string& object, const char* name, std::span<const T> values) {
+    const hsize_t size = values.size();
+    const Dataspace space(size == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, nullptr));
+    const Attribute attribute(keep(H5Acreate_by_name(file_, object.c_str(), name, native_type<T>(), space, H5P_DEFAULT,
+                                                     H5P_DEFAULT, H5P_DEFAULT)));
+    keep(H5Awrite(attribute, native_type<T>(), values.data()));
+  }
+
+  template <class T>
+  void attribute(const std::string& object, const char* name, T value) {
+    attribute(object, name, std::span<const T>(&value, 1));
+  }
+
+  void attribute(const std::string& object, const char* name, const std::string& text) {
+    const Datatype type(H5Tcopy(H5T_C_S1));
+    keep(H5Tset_size(type, std::max<std::size_t>(text.size(), 1)));
+    keep(H5Tset_strpad(type, H5T_STR_NULLPAD));
+    const Dataspace space(H5Screate(H5S_SCALAR));
+    const Attribute attribute(
+        keep(H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
+    keep(H5Awrite(attribute, type, text.c_str()));
+  }
+
+  /// The rows of all ranks, one rank's after the other's; columns = 0: a one-dimensional dataset.
+  template <class T>
+  void dataset(const std::string& name, const std::vector<T>& values, int columns = 0, const char* unit = nullptr) {
+    const auto width = static_cast<hsize_t>(std::max(columns, 1));
+    const std::int64_t rows = static_cast<std::int64_t>(values.size() / width);
+    std::int64_t first = 0;
+    MPI_Exscan(&rows, &first, 1, MPI_INT64_T, MPI_SUM, comm_);
+    const int rank = columns > 0 ? 2 : 1;
+    const std::array<hsize_t, 2> whole{static_cast<hsize_t>(sum_over_ranks(comm_, rows)), width};
+    const std::array<hsize_t, 2> start{static_cast<hsize_t>(first), 0};
+    const std::array<hsize_t, 2> count{static_cast<hsize_t>(rows), width};
+    const Dataspace file_space(keep(H5Screate_simple(rank, whole.data(), nullptr)));
+    const Dataspace memory_space(keep(H5Screate_simple(rank, count.data(), nullptr)));
+    const Dataset set(
+        keep(H5Dcreate2(file_, name.c_str(), native_type<T>(), file_space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
+    if (rows > 0) {
+      keep(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+    } else {
+      keep(H5Sselect_none(file_space));
+      keep(H5Sselect_none(memory_space));
+    }
+    keep(H5Dwrite(set, native_type<T>(), memory_space, file_space, transfer_, values.data()));
+    if (unit) attribute(name, "unit", std::string(unit));
+  }
+
+  /// Closes the file, forces it to the disk and gives it its name. Throws OutputError on all ranks.
+  void finish() {
+    keep(H5Fclose(file_.release()));
+    if (rank_of(comm_) == 0 && failure_.empty()) {
+      const int descriptor = open(partial_.c_str(), O_RDONLY);
+      if (descriptor < 0 || fsync(descriptor) != 0) failure_ = std::strerror(errno);
+      if (descriptor >= 0) close(descriptor);
+    }
+    const bool failed = any_rank(comm_, !failure_.empty());
+    if (rank_of(comm_) == 0) {
+      std::error_code error;
+      if (failed) {
+        fs::remove(partial_, error);
+      } else {
+        fs::rename(partial_, path_, error);
+        if (error) failure_ = error.message();
+      }
+    }
+    throw_together(comm_, failure_.empty() ? "" : fmt::format("cannot write {}: {}", path_, failure_));
+  }
+
+ private:
+  template <class Code>
+  Code keep(Code code) {
+    if (code < 0 && failure_.empty()) failure_ = hdf5_reason();
+    return code;
+  }
+
+  QuietErrors quiet_;
+  MPI_Comm comm_;
+  std::string path_;
+  std::string partial_;
+  File file_;
+  Properties transfer_;
+  std::string failure_;
+};
+
+/// A file that one rank reads by itself. Throws OutputError.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {
+    if (!fs::exists(path)) fail("no such file");
+    file_ = File(need(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)));
+    if (H5Aexists(file_, "format_version") <= 0 || H5Lexists(file_, "VTKHDF", H5P_DEFAULT) <= 0)
+      fail("not a snapshot of Impinge");
+    const auto version = number<int>("format_version");
+    if (version != format_version)
+      fail(fmt::format("format version {}, but this Impinge reads version {}", version, format_version));
+  }
+
+  template <class T>
+  T number(const char* name) const {
+    T value{};
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Dataspace space(need(H5Aget_space(attribute)));
+    if (H5Sget_simple_extent_npoints(space) != 1) fail(fmt::format("attribute {} is not a single number", name));
+    need(H5Aread(attribute, native_type<T>(), &value));
+    return value;
+  }
+
+  std::string text(const char* name) const {
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Datatype type(need(H5Aget_type(attribute)));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+      fail(fmt::format("attribute {} is not a text of fixed length", name));
+    std::string value(H5Tget_size(type), '\0');
+    need(H5Aread(attribute, type, value.data()));
+    value.erase(std::find(value.begin(), value.end(), '\0'), value.end());
+    return value;
+  }
+
+  std::int64_t rows(const std::string& name) const {
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    return extent(set, name)[0];
+  }
+
+  /// Rows [first, first + count) of a dataset of `columns` columns (0: one-dimensional).
+  template <class T>
+  std::vector<T> dataset(const std::string& name, std::int64_t first, std::int64_t count, int columns = 0) const {
+    const auto width = static_cast<hsize_t>(std::max(columns, 1));
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    const auto whole = extent(set, name);
+    if (first + count > whole[0] || whole[1] != columns)
+      fail(fmt::format("dataset {} has {} x {} entries", name, whole[0], whole[1]));
+    std::vector<T> values(static_cast<std::size_t>(count) * width);
+    if (count == 0) return values;
+    const int rank = columns > 0 ? 2 : 1;
+    const std::array<hsize_t, 2> begin{static_cast<hsize_t>(first), 0};
+    const std::array<hsize_t, 2> size{static_cast<hsize_t>(count), width};
+    const Dataspace file_space(need(H5Dget_space(set)));
+    const Dataspace memory_space(need(H5Screate_simple(rank, size.data(), nullptr)));
+    need(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, begin.data(), nullptr, size.data(), nullptr));
+    need(H5Dread(set, native_type<T>(), memory_space, file_space, H5P_DEFAULT, values.data()));
+    return values;
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw OutputError(fmt::format("cannot read {}: {}", path_, reason));
+  }
+
+ private:
+  template <class Code>
+  Code need(Code code) const {
+    if (code < 0) fail(hdf5_reason());
+    return code;
+  }
+
+  // Rows and columns; 0 columns for a one-dimensional dataset.
+  std::array<std::int64_t, 2> extent(hid_t set, const std::string& name) const {
+    const Dataspace space(need(H5Dget_space(set)));
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank != 1 && rank != 2) fail(fmt::format("dataset {} has {} dimensions", name, rank));
+    std::array<hsize_t, 2> size{0, 0};
+    H5Sget_simple_extent_dims(space, size.data(), nullptr);
+    return {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1])};
+  }
+
+  QuietErrors quiet_;
+  std::string path_;
+  File file_;
+};
+
+/// Rows of three components.
+template <int Dim>
+void append(std::vector<double>& rows, const Vec<Dim>& vector) {
+  for (int k = 0; k < 3; ++k) rows.push_back(k < Dim ? vector[k] : 0.0);
+}
+
+template <int Dim>
+std::vector<double> three_columns(const std::vector<Vec<Dim>>& vectors, int count) {
+  std::vector<double> rows;
+  rows.reserve(3 * static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) append(rows, vectors[static_cast<std::size_t>(i)]);
+  return rows;
+}
+
+/// The first `count` values, as the type of the file.
+template <class Stored, class T>
+std::vector<Stored> column(const std::vector<T>& values, int count) {
+  std::vector<Stored> result(static_cast<std::size_t>(count));
+  std::transform(values.begin(), values.begin() + count, result.begin(),
+                 [](const T& value) { return static_cast<Stored>(value); });
+  return result;
+}
+
+std::string mpi_version() {
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+  int length = 0;
+  MPI_Get_library_version(text.data(), &length);
+  const std::string whole(text.data());
+  return whole.substr(0, whole.find(','));
+}
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+void write_header(Writer& file, const SnapshotHeader& header) {
+  file.attribute("/", "format_version", format_version);
+  file.attribute("/", "dimension", header.dimension);
+  file.attribute("/", "step", header.step);
+  file.attribute("/", "time", header.time);
+  file.attribute("/", "dt", header.dt);
+  file.attribute("/", "window_begin", header.window_begin);
+  file.attribute("/", "window_end", header.window_end);
+  file.attribute("/", "status", header.status);
+  file.attribute("/", "message", header.message);
+  file.attribute("/", "case", header.case_text);
+  file.attribute("/", "code_version", std::string("impinge " IMPINGE_VERSION));
+  file.attribute("/", "petsc_version", petsc_version());
+  file.attribute("/", "hdf5_version", hdf5_version());
+  file.attribute("/", "mpi_version", mpi_version());
+}
+
+SnapshotHeader header_of(const Reader& file) {
+  SnapshotHeader header;
+  header.dimension = file.number<int>("dimension");
+  header.step = file.number<std::int64_t>("step");
+  header.time = file.number<double>("time");
+  header.dt = file.number<double>("dt");
+  header.window_begin = file.number<double>("window_begin");
+  header.window_end = file.number<double>("window_end");
+  header.status = file.text("status");
+  header.message = file.text("message");
+  header.case_text = file.text("case");
+  header.code_version = file.text("code_version");
+  return header;
+}
+
+/// One vertex cell per particle; one piece per rank.
+void write_cells(Writer& file, int count) {
+  std::vector<std::int64_t> places(static_cast<std::size_t>(count) + 1);
+  std::iota(places.begin(), places.end(), std::int64_t{0});
+  const std::vector<std::int64_t> size{count};
+  for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
+    file.dataset(fmt::format("/VTKHDF/{}", name), size);
+  file.dataset("/VTKHDF/Offsets", places);
+  places.pop_back();
+  file.dataset("/VTKHDF/Connectivity", places);
+  constexpr std::uint8_t vtk_vertex = 1;
+  file.dataset("/VTKHDF/Types", std::vector<std::uint8_t>(static_cast<std::size_t>(count), vtk_vertex));
+}
+
+template <int Dim>
+void write_wall(Writer& file, const Particles<Dim>& particles, double window_begin, double window_end) {
+  std::vector<double> position, mean_pressure;
+  std::vector<std::int64_t> id;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    if (particles.type[i] != ParticleType::wall) continue;
+    append(position, particles.position[i]);
+    mean_pressure.push_back(particles.pressure_impulse[i] / (window_end - window_begin));
+    id.push_back(particles.id[i]);
+  }
+  file.create_group("/wall");
+  file.attribute("/wall", "window_begin", window_begin);
+  file.attribute("/wall", "window_end", window_end);
+  file.dataset("/wall/position", position, 3, "m");
+  file.dataset("/wall/mean_pressure", mean_pressure, 0, "Pa");
+  file.dataset("/wall/id", id, 0, "1");
+}
+
+}  // namespace
+
+std::string snapshot_path(const std::string& directory, const std::string& name, std::int64_t step) {
+  return (fs::path(directory) / fmt::format("{}_{:08}.vtkhdf", name, step)).string();
+}
+
+std::vector<std::string> list_snapshots(const std::string& directory, const std::string& name) {
+  static const std::regex form(R"((.+)_(\d{8,18})\.vtkhdf)");
+  std::vector<std::pair<std::int64_t, std::string>> found;
+  std::error_code error;
+  for (auto entry = fs::directory_iterator(directory, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    const std::string file = entry->path().filename().string();
+    std::smatch match;
+    if (std::regex_match(file, match, form) && (name.empty() || match[1] == name))
+      found.emplace_back(std::stoll(match[2]), entry->path().string());
+  }
+  if (error) throw OutputError(fmt::format("cannot read the directory {}: {}", directory, error.message()));
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> paths;
+  for (auto& [step, path] : found) paths.push_back(std::move(path));
+  return paths;
+}
+
+template <int Dim>
+void write_snapshot(MPI_Comm comm, const std::string& path, const Particles<Dim>& particles,
+                    const SnapshotHeader& header) {
+  const int n = particles.owned;
+  Writer file(comm, path);
+  write_header(file, header);
+  file.create_group("/VTKHDF");
+  file.attribute<std::int64_t>("/VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
+  file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
+  file.dataset("/VTKHDF/Points", three_columns(particles.position, n), 3, "m");
+  write_cells(file, n);
+  file.create_group("/VTKHDF/PointData");
+  const auto field = [](const char* name) { return std::string(point_data) + name; };
+  file.dataset(field("velocity"), three_columns(particles.velocity, n), 3, "m/s");
+  file.dataset(field("pressure"), column<double>(particles.pressure, n), 0, "Pa");
+  file.dataset(field("pressure_impulse"), column<double>(particles.pressure_impulse, n), 0, "Pa s");
+  file.dataset(field("number_density"), column<double>(particles.number_density, n), 0, "1");
+  file.dataset(field("type"), column<std::uint8_t>(particles.type, n), 0, "1");
+  file.dataset(field("free_surface"), column<std::uint8_t>(particles.free_surface, n), 0, "1");
+  file.dataset(field("id"), column<std::int64_t>(particles.id, n), 0, "1");
+  file.dataset(field("rank"), std::vector<std::int32_t>(static_cast<std::size_t>(n), rank_of(comm)), 0, "1");
+  if (header.window_end > header.window_begin) write_wall(file, particles, header.window_begin, header.window_end);
+  file.finish();
+}
+
+SnapshotHeader read_header(const std::string& path) { return header_of(Reader(path)); }
+
+template <int Dim>
+SnapshotHeader read_snapshot(MPI_Comm comm, const std::string& path, Particles<Dim>& particles) {
+  SnapshotHeader header;
+  std::string failure;
+  try {
+    const Reader file(path);
+    header = header_of(file);
+    if (header.dimension != Dim) file.fail(fmt::format("it has {} dimensions, not {}", header.dimension, Dim));
+    const std::int64_t all = file.rows("/VTKHDF/Points");
+    const std::int64_t first = all * rank_of(comm) / ranks_of(comm);
+    const std::int64_t count = all * (rank_of(comm) + 1) / ranks_of(comm) - first;
+    const auto field = [&]<class T>(const char* name, T) {
+      return file.dataset<T>(std::string(point_data) + name, first, count);
+    };
+    const auto position = file.dataset<double>("/VTKHDF/Points", first, count, 3);
+    const auto velocity = file.dataset<double>(std::string(point_data) + "velocity", first, count, 3);
+    const auto type = field("type", std::uint8_t{});
+    particles = {};
+    particles.owned = static_cast<int>(count);
+    particles.pressure = field("pressure", double{});
+    particles.pressure_impulse = field("pressure_impulse", double{});
+    particles.number_density = field("number_density", double{});
+    particles.free_surface = field("free_surface", std::uint8_t{});
+    particles.id = field("id", std::int64_t{});
+    particles.resize(particles.owned);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      for (int k = 0; k < Dim; ++k) {
+        particles.position[i][k] = position[3 * i + static_cast<std::size_t>(k)];
+        particles.velocity[i][k] = velocity[3 * i + static_cast<std::size_t>(k)];
+      }
+      if (type[i] > static_cast<std::uint8_t>(ParticleType::ghost))
+        file.fail(fmt::format("particle {} has the unknown type {}", particles.id[i], type[i]));
+      particles.type[i] = static_cast<ParticleType>(type[i]);
+    }
+  } catch (const OutputError& error) {
+    failure = error.what();
+  }
+  throw_together(comm, failure);
+  return header;
+}
+
+template void write_snapshot(MPI_Comm, const std::string&, const Particles<2>&, const SnapshotHeader&);
+template void write_snapshot(MPI_Comm, const std::string&, const Particles<3>&, const SnapshotHeader&);
+template SnapshotHeader read_snapshot(MPI_Comm, const std::string&, Particles<2>&);
+template SnapshotHeader read_snapshot(MPI_Comm, const std::string&, Particles<3>&);
+
+}  // namespace impinge
