@@ -14,14 +14,16 @@ class FailurePrinter : public testing::EmptyTestEventListener {
   explicit FailurePrinter(int rank) : rank_(rank) {}
 
  private:
+  void OnTestStart(const testing::TestInfo& test) override { test_ = &test; }
+
   void OnTestPartResult(const testing::TestPartResult& result) override {
     if (!result.failed()) return;
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     std::printf("%s:%d: rank %d, %s.%s\n%s\n", result.file_name() ? result.file_name() : "?", result.line_number(),
-                rank_, test ? test->test_suite_name() : "?", test ? test->name() : "?", result.message());
+                rank_, test_ ? test_->test_suite_name() : "?", test_ ? test_->name() : "?", result.message());
     std::fflush(stdout);
   }
 
+  const testing::TestInfo* test_ = nullptr;
   int rank_;
 };
 
