@@ -38,8 +38,8 @@ PetscSession::PetscSession(const char* program, const std::vector<std::string>& 
 
 PetscSession::~PetscSession() {
   PetscPopErrorHandler();
-  // Options are checked by the solver; PETSc's own warning would name our defaults too.
-  PetscOptionsClear(nullptr);
+  // PETSc's own warning of unused options would name the solver's defaults too; see unused_petsc_options.
+  PetscOptionsSetValue(nullptr, "-options_left", "no");
   PetscFinalize();
 }
 

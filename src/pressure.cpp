@@ -68,17 +68,7 @@ void PressureSolver::Block::append_row(std::vector<std::pair<PetscInt, double>>&
   start.push_back(static_cast<PetscInt>(column.size()));
 }
 
-PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm) {
-  check(KSPCreate(comm, solver_.address()));
-  check(KSPSetOptionsPrefix(solver_, prefix));
-  check(KSPSetType(solver_, KSPCG));
-  check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
-  // A warm start may begin far above |b|: that is no divergence.
-  check(KSPSetTolerances(solver_, tolerance, PETSC_DEFAULT, 1e20, 10000));
-  check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
-  PC preconditioner;
-  check(KSPGetPC(solver_, &preconditioner));
-  check(PCSetType(preconditioner, PCHYPRE));
+PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), tolerance_(tolerance) {
   char chosen[64] = "hypre";
   check(PetscOptionsGetString(nullptr, prefix, "-pc_type", chosen, sizeof chosen, nullptr));
   if (std::string(chosen) == "hypre") {
@@ -89,6 +79,20 @@ PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm) {
     set_default_option("pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi");
     set_default_option("pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi");
   }
+  create_solver();
+}
+
+void PressureSolver::create_solver() {
+  check(KSPCreate(comm_, solver_.address()));
+  check(KSPSetOptionsPrefix(solver_, prefix));
+  check(KSPSetType(solver_, KSPCG));
+  check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+  // A warm start may begin far above |b|: that is no divergence.
+  check(KSPSetTolerances(solver_, tolerance_, PETSC_DEFAULT, 1e20, 10000));
+  check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
+  PC preconditioner;
+  check(KSPGetPC(solver_, &preconditioner));
+  check(PCSetType(preconditioner, PCHYPRE));
   check(KSPSetFromOptions(solver_));
 }
 
@@ -102,7 +106,7 @@ void PressureSolver::set_default_option(const char* name, const char* value) {
 }
 
 void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo) {
-  check(KSPReset(solver_));
+  create_solver();  // KSPReset would leave a multigrid's levels with the sizes of the last step
   matrix_.reset();
   diagonal_.clear();
   off_diagonal_.clear();

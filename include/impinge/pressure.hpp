@@ -71,10 +71,12 @@ class PressureSolver {
     void append_row(std::vector<std::pair<PetscInt, double>>& entries);  // sorts them
   };
 
+  void create_solver();
   void set_default_option(const char* name, const char* value);
   void find_pockets(const PressureEquation& equation, const Halo& halo);
 
   MPI_Comm comm_;
+  double tolerance_;
   PetscSolver solver_;
   std::vector<std::string> default_options_;
   Block diagonal_;      // columns of this rank, local

@@ -1,0 +1,245 @@
+#!/usr/bin/python3
+"""The programs as a user calls them: exit codes, messages, files. Usage: system_test.py BIN_DIRECTORY [unittest options]"""
+
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import h5py
+import numpy as np
+from vtkmodules.vtkIOHDF import vtkHDFReader
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+QUICK = ROOT / "input/jet60-quick.toml"
+POINT_DATA = {
+    "velocity": ("float64", "m/s"),
+    "pressure": ("float64", "Pa"),
+    "number_density": ("float64", "1"),
+    "type": ("uint8", "1"),
+    "free_surface": ("uint8", "1"),
+    "id": ("int64", "1"),
+    "rank": ("int32", "1"),
+}
+
+
+def call(*words, cwd=None, ranks=0):
+    launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks else []
+    return subprocess.run(
+        [*launcher, *map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+def impinge(*words, cwd=None, ranks=0):
+    return call(BIN / "impinge", *words, cwd=cwd, ranks=ranks)
+
+
+class System(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.directory = pathlib.Path(temporary.name)
+
+    def case(self, text):
+        path = self.directory / "case.toml"
+        path.write_text(f'include = "{QUICK}"\n{text}')
+        return path
+
+
+class CommandLine(System):
+    def test_texts(self):
+        for words, part in (
+            (["--help"], "CASE.toml"),
+            (["--version"], "impinge "),
+            (["--describe"], "particles.spacing"),
+            ([QUICK, "--check"], "bytes per particle"),
+        ):
+            done = impinge(*words, cwd=self.directory)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(part, done.stdout)
+        self.assertEqual(list(self.directory.iterdir()), [])
+
+    def test_wrong_input_is_exit_2_with_file_and_line(self):
+        for text, message in (
+            ("speed = 1", 'case.toml:2: speed = 1: unknown key'),
+            ("jet.speed = 'fast'", "case.toml:2: jet.speed = \"fast\": not a number"),
+            ("pressure.gamma = 1.5", "case.toml:2: pressure.gamma = 1.5: out of range; allowed: [0, 1]"),
+            ("particles.spacing = -0.02", "case.toml:2: particles.spacing = -0.02: out of range; allowed: > 0 (m)"),
+            ("plate.begin = 0.5\nplate.end = 0.8", "case.toml:2: plate.begin = 0.5"),
+            ("output.directory = '/proc/nowhere'", 'case.toml:2: output.directory = "/proc/nowhere": cannot write there'),
+        ):
+            for ranks in (0, 2):
+                done = impinge(self.case(text), cwd=self.directory, ranks=ranks)
+                self.assertEqual(done.returncode, 2, f"{text}: {done.stderr}")
+                self.assertEqual(done.stderr.count(message), 1, f"{text}: {done.stderr}")
+
+    def test_all_mistakes_at_once(self):
+        done = impinge(self.case("speed = 1\npressure.gamma = 7"), "--set", "time.dt=-1")
+        self.assertEqual(done.returncode, 2)
+        for part in ("case.toml:2:", "case.toml:3:", "--set: time.dt"):
+            self.assertIn(part, done.stderr)
+
+    def test_missing_file_and_unused_petsc_option(self):
+        done = impinge("nowhere.toml", ranks=2)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nowhere.toml", done.stderr)
+        done = impinge(QUICK, "-ppe_pc_tpye", "jacobi", "--check", ranks=2)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("-ppe_pc_tpye", done.stderr)
+        done = impinge(QUICK, "-ppe_pc_type", "nonsense", "--check")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("nonsense", done.stderr)
+
+
+class Run(System):
+    def run_case(self, *words, ranks=2, code=0):
+        done = impinge(QUICK, "--set", "output.directory=out", *words, cwd=self.directory, ranks=ranks)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def history(self):
+        with open(self.directory / "out/jet60-quick_history.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def snapshots(self):
+        return sorted((self.directory / "out").glob("*.vtkhdf"))
+
+    def test_writes_snapshots_series_and_history(self):
+        done = self.run_case("--set", "time.end=0.05", "--set", "output.interval=0.02", "--set",
+                             "output.average_start=0.01", ranks=3)
+        self.assertIn("iterations", done.stdout)
+        self.assertIn("in - out - stored = 0", done.stdout)
+        history = self.history()
+        self.assertEqual([int(row["step"]) for row in history], list(range(1, len(history) + 1)))
+        self.assertAlmostEqual(float(history[-1]["t"]), 0.05, delta=8e-4)
+        for row in history:
+            self.assertEqual(int(row["in"]) - int(row["out"]) - int(row["fluid"]), 0)
+            self.assertLessEqual(float(row["residual"]), 1e-6)
+        snapshots = self.snapshots()
+        self.assertEqual(len(snapshots), 4)
+        self.assertEqual(snapshots[0].name, "jet60-quick_00000000.vtkhdf")
+        with h5py.File(snapshots[-1]) as file:
+            self.assertEqual(file.attrs["step"], int(history[-1]["step"]))
+            self.assertEqual(file.attrs["time"], float(history[-1]["t"]))
+            self.assertEqual(file.attrs["status"], b"finished")
+            self.assertEqual(file.attrs["format_version"], 1)
+            for name in ("dt", "case", "code_version", "petsc_version", "hdf5_version", "mpi_version"):
+                self.assertIn(name, file.attrs)
+            self.assertEqual(len(file["VTKHDF/NumberOfPoints"]), 3)
+            points = file["VTKHDF/Points"]
+            self.assertEqual(points.shape, (int(history[-1]["particles"]), 3))
+            for name, (kind, unit) in POINT_DATA.items():
+                data = file["VTKHDF/PointData"][name]
+                self.assertEqual((data.dtype, data.attrs["unit"]), (kind, unit.encode()), name)
+                self.assertEqual(len(data), len(points))
+            self.assertEqual(len(np.unique(file["VTKHDF/PointData/id"])), len(points))
+            self.assertEqual(set(file["VTKHDF/PointData/rank"][:]), {0, 1, 2})
+            wall = file["wall"]
+            self.assertAlmostEqual(wall.attrs["window_begin"], 0.01, delta=8e-4)
+            self.assertEqual(wall.attrs["window_end"], file.attrs["time"])
+            self.assertEqual(len(wall["mean_pressure"]), np.sum(file["VTKHDF/PointData/type"][:] == 2))
+            # The case text in the file is a case by itself: it runs again.
+            (self.directory / "again.toml").write_bytes(file.attrs["case"])
+        self.assertEqual(impinge("again.toml", "--check", cwd=self.directory).returncode, 0)
+
+        series = xml.etree.ElementTree.parse(self.directory / "out/jet60-quick.xmf")
+        times = [float(time.get("Value")) for time in series.iter("Time")]
+        self.assertEqual(len(times), 4)
+        for item in series.iter("DataItem"):
+            name, path = item.text.split(":")
+            with h5py.File(self.directory / "out" / name) as file:
+                shape = tuple(int(n) for n in item.get("Dimensions").split())
+                self.assertEqual(file[path].shape, shape)
+
+        # A second run replaces the first.
+        self.run_case("--set", "time.end=0.008")
+        self.assertEqual(len(self.snapshots()), 2)
+
+    def test_vtk_reads_snapshots_also_with_an_empty_rank(self):
+        tank = ROOT / "input/hydrostatic.toml"
+        done = impinge(tank, "--set", "time.end=0.01", "--set", "output.average_start=0",
+                       "--set", "output.directory=out", "--set", "tank.size=[0.06,0.06]",
+                       "--set", "tank.fluid_height=0.04", cwd=self.directory, ranks=12)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        path = self.snapshots()[-1]
+        with h5py.File(path) as file:
+            counts = file["VTKHDF/NumberOfPoints"][:]
+            pressure = file["VTKHDF/PointData/pressure"][:]
+        self.assertIn(0, counts)
+        reader = vtkHDFReader()
+        self.assertTrue(reader.CanReadFile(str(path)))
+        reader.SetFileName(str(path))
+        reader.Update()
+        grid = reader.GetOutput()
+        self.assertEqual(grid.GetNumberOfPoints(), sum(counts))
+        self.assertEqual(grid.GetNumberOfCells(), sum(counts))
+        data = grid.GetPointData()
+        for name in POINT_DATA:
+            self.assertTrue(data.HasArray(name), name)
+        array = data.GetArray("pressure")
+        self.assertEqual([array.GetValue(i) for i in range(len(pressure))], list(pressure))
+
+    def test_divergence_is_exit_3_with_a_last_state_that_the_post_processing_opens(self):
+        done = impinge(ROOT / "input/paper/jet60-A1.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=8e-4",
+                       "--set", "output.directory=out", cwd=self.directory, ranks=2)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, r"the run failed at step \d+, phase \w+: ")
+        with h5py.File(self.snapshots()[-1]) as file:
+            self.assertEqual(file.attrs["status"], b"failed")
+            self.assertIn(b"phase", file.attrs["message"])
+        with open(self.directory / "out/jet60-A1_history.csv", encoding="utf-8") as file:
+            steps = [int(row["step"]) for row in csv.DictReader(file)]
+        self.assertIn(f"step {steps[-1]},", done.stderr)
+        validated = call(BIN / "impinge-validate", "out", cwd=self.directory)
+        self.assertEqual(validated.returncode, 0, validated.stderr)
+        report = json.loads((self.directory / "out/validation/validation.json").read_text())
+        self.assertEqual(report["status"], "failed")
+
+    def test_an_iteration_limit_is_a_failed_solve(self):
+        done = self.run_case("-ppe_ksp_max_it", "1", code=3)
+        self.assertRegex(done.stderr, r"step 1, phase pressure: DIVERGED_ITS after 1 iterations")
+
+    def test_petsc_options_choose_the_solver(self):
+        for words in (["-ppe_pc_type", "jacobi"], ["-ppe_ksp_type", "gmres", "-ppe_pc_type", "bjacobi"],
+                      ["-ppe_pc_type", "gamg", "-ppe_ksp_monitor"]):
+            done = self.run_case("--set", "time.end=0.004", *words)
+            self.assertEqual("KSP Residual norm" in done.stdout, "-ppe_ksp_monitor" in words)
+
+    def test_partitioner_and_log_stages(self):
+        done = self.run_case("--set", "time.end=0.004", "--set", "parallel.partitioner=ptscotch", "-log_view")
+        for stage in ("Predict", "Redistribute", "Neighbours", "Density", "PPE assembly", "PPE solve", "Correct"):
+            self.assertIn(stage, done.stdout)
+
+    def test_validation_measures_a_run(self):
+        self.run_case("--set", "time.end=0.2", "--set", "jet.start=steady", "--set", "output.interval=0.05")
+        done = call(BIN / "impinge-validate", "out", cwd=self.directory)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        validation = self.directory / "out/validation"
+        report = json.loads((validation / "validation.json").read_text())
+        metrics = report["metrics"]
+        self.assertEqual(metrics["particle_balance"], 0)
+        self.assertLess(abs(metrics["force_ratio"] - 1), 0.5)
+        self.assertLess(abs(metrics["film_h1"] - 1), 0.1)
+        for name in ("wall_l2", "peak_pressure", "peak_x", "field_l2", "mean_field_l2", "velocity_rms",
+                     "surface_rms_dp", "film_h2"):
+            self.assertTrue(np.isfinite(metrics[name]), name)
+        for name in ("pressure.png", "wall_pressure.png", "film_thickness.png", "ranks.png", "wall_pressure.csv",
+                     "film_thickness.csv"):
+            self.assertTrue((validation / name).stat().st_size > 0, name)
+
+    def test_validation_refuses_what_is_no_run(self):
+        done = call(BIN / "impinge-validate", self.directory)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(str(self.directory), done.stderr)
+
+
+if __name__ == "__main__":
+    if os.geteuid() == 0:
+        os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    unittest.main(verbosity=2)
