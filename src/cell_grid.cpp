@@ -90,7 +90,8 @@ Vec<Dim> CellGrid<Dim>::wrapped(Vec<Dim> position) const {
     if (!periodic_[axis]) continue;
     const double period = extent_[axis] * edge_[k];
     if (position[k] < low_[k]) position[k] += period;
-    if (position[k] >= low_[k] + period) position[k] -= period;
+    // The condition is the one of cell(): whatever rounding does, the position has a cell.
+    if ((position[k] - low_[k]) / edge_[k] >= extent_[axis]) position[k] = std::max(low_[k], position[k] - period);
   }
   return position;
 }

@@ -28,15 +28,16 @@ JetGeometry::JetGeometry(const Config& config)
   inlet_corner_ = plate_point - length * along_ - 0.5 * width * across_;
 
   // An impacting column ends in a straight edge whose lower corner touches the plate.
-  const double column = start_ == JetStart::impact ? inlet_corner_[1] / std::sin(angle) : length + width;
+  // A steady one ends where the jet is still straight.
+  const double column = start_ == JetStart::impact ? inlet_corner_[1] / std::sin(angle) : 0.5 * width;
   column_rows_ = static_cast<std::int64_t>(std::floor(column / dp + 1e-9));
   wall_columns_ = std::lround((plate_end_ - plate_begin_) / dp);
-  steady_seam_ = std::round(0.5 * inlet_corner_[1] / dp) * dp;
-  film_rows_ = start_ == JetStart::steady ? std::lround(steady_seam_ / dp) : 0;
+  column_end_ = static_cast<double>(column_rows_) * dp;
+  steady_rows_ = start_ == JetStart::steady ? static_cast<std::int64_t>(std::ceil(at(column_end_, width)[1] / dp)) : 0;
 
   last_row_ = -(buffer_rows_ - 0.5) * dp;
   next_id_ =
-      wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ + film_rows_ * wall_columns_;
+      wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ + steady_rows_ * wall_columns_;
 
   // Everything the plate, the ghosts and the buffer occupy, and room above for splash.
   bounds_ = {{{plate_begin_, -wall_layers * dp}}, {{plate_end_, 0.0}}};
@@ -73,16 +74,19 @@ void JetGeometry::fill(int rank, int ranks, Particles<2>& particles) const {
     } else if (start_ == JetStart::impact) {
       if (position[1] >= 0.5 * dp * (1.0 - 1e-9))
         particles.append({position, inlet_velocity(), 0.0, 0.0, first_id + k, ParticleType::fluid});
-    } else if (position[1] > steady_seam_ && jet_.contains(position)) {
+    } else {
       particles.append(steady_fluid(position, first_id + k));
     }
   });
   first_id += (buffer_rows_ + column_rows_) * particles_per_row_;
 
-  for_share(film_rows_ * wall_columns_, rank, ranks, [&](std::int64_t k) {
+  for_share(steady_rows_ * wall_columns_, rank, ranks, [&](std::int64_t k) {
     const double x = plate_begin_ + (static_cast<double>(k % wall_columns_) + 0.5) * dp;
     const double y = (static_cast<double>(k / wall_columns_) + 0.5) * dp;
-    if (jet_.contains({{x, y}})) particles.append(steady_fluid({{x, y}}, first_id + k));
+    const Vec<2> position{{x, y}};
+    const Vec<2> from_corner = position - inlet_corner_;
+    const bool in_column = dot(from_corner, along_) < column_end_ && dot(from_corner, across_) > -dp;
+    if (!in_column && jet_.contains(position)) particles.append(steady_fluid(position, first_id + k));
   });
 }
 

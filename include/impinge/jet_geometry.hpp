@@ -37,12 +37,12 @@ class JetGeometry final : public Geometry<2> {
   double plate_begin_;
   double plate_end_;
   Box<2> bounds_;
-  double steady_seam_;  // height where a steady start changes from the plate's lattice to the jet's [m]
+  double column_end_;  // s where a steady start changes from the jet's lattice to the plate's [m]
 
-  // Initial particles are numbered block by block: walls, inlet buffer, jet column, steady film.
+  // Initial particles are numbered block by block: walls, inlet buffer, jet column, the rest of a steady jet.
   std::int64_t wall_columns_;
   std::int64_t column_rows_;
-  std::int64_t film_rows_;
+  std::int64_t steady_rows_;
   double last_row_;  // s of the hindmost buffer row [m]
   std::int64_t next_id_;
 };

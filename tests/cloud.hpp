@@ -1,0 +1,53 @@
+#pragma once
+// Clouds of particles for the tests, in units of their spacing.
+
+#include <algorithm>
+#include <random>
+#include <tuple>
+
+#include "impinge/cell_grid.hpp"
+#include "impinge/particles.hpp"
+
+namespace impinge {
+
+/// A lattice of spacing 1 in the box [0, extent), each particle displaced by up to `jitter` along every axis; velocity
+/// and pressure are random. Fluid, ids 0, 1, 2, ... The same at every call.
+template <int Dim>
+Particles<Dim> make_cloud(const std::array<int, Dim>& extent, double jitter) {
+  std::mt19937 random(42);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::int64_t count = 1;
+  for (const int n : extent) count *= n;
+  Particles<Dim> cloud;
+  for (std::int64_t k = 0; k < count; ++k) {
+    ParticleRecord<Dim> record{};
+    std::int64_t rest = k;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const int n = extent[static_cast<std::size_t>(axis)];
+      record.position[axis] = static_cast<double>(rest % n) + 0.5 + jitter * uniform(random);
+      record.velocity[axis] = uniform(random);
+      rest /= n;
+    }
+    record.pressure = uniform(random);
+    record.pressure_impulse = uniform(random);
+    record.id = k;
+    cloud.append(record);
+  }
+  return cloud;
+}
+
+/// The particles `keep(record)` says yes to, sorted along the cells and, within a cell, by id.
+template <int Dim, class Keep>
+Particles<Dim> sorted(const CellGrid<Dim>& cells, const Particles<Dim>& particles, Keep&& keep) {
+  std::vector<std::tuple<int, std::int64_t, int>> order;
+  for (int i = 0; i < particles.owned; ++i) {
+    const ParticleRecord<Dim> record = particles.record(i);
+    if (keep(record)) order.emplace_back(cells.cell(record.position), record.id, i);
+  }
+  std::sort(order.begin(), order.end());
+  Particles<Dim> result;
+  for (const auto& [cell, id, i] : order) result.append(particles.record(i));
+  return result;
+}
+
+}  // namespace impinge

@@ -1,0 +1,174 @@
+// Whole runs: any number of ranks computes what one rank computes.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "gather.hpp"
+#include "impinge/simulation.hpp"
+#include "shipped_case.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr const char* tight = "pressure.tolerance=1e-12";
+
+/// The 60 degree jet at H/dp = 10.
+Config jet_case(const std::vector<std::string>& settings = {}) {
+  std::vector<std::string> all{tight};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return parse_case({{"jet.toml", R"(geometry = "jet"
+particles.spacing = 0.04
+time = {end = 10.0, dt = 1.6e-3}
+jet = {width = 0.4, speed = 1.0, angle = 60.0}
+pressure.gamma = 0.01
+)"}},
+                    all);
+}
+
+/// What the comparison looks at, by id.
+template <int Dim>
+struct State {
+  std::map<std::int64_t, Vec<Dim>> position;
+  std::map<std::int64_t, double> number_density;
+  std::map<std::int64_t, std::uint8_t> free_surface;
+  std::map<std::int64_t, ParticleType> type;
+
+  State(MPI_Comm comm, const Particles<Dim>& particles)
+      : position(gather_by_id(comm, particles, particles.position)),
+        number_density(gather_by_id(comm, particles, particles.number_density)),
+        free_surface(gather_by_id(comm, particles, particles.free_surface)),
+        type(gather_by_id(comm, particles, particles.type)) {}
+};
+
+template <int Dim>
+void expect_the_same_run(const Config& config, int steps) {
+  const double spacing = config.particles.spacing;
+  Simulation<Dim> here(MPI_COMM_WORLD, config), alone(MPI_COMM_SELF, config);
+  {
+    const State<Dim> shared(MPI_COMM_WORLD, here.particles()), single(MPI_COMM_SELF, alone.particles());
+    EXPECT_EQ(shared.position, single.position);
+    EXPECT_EQ(shared.number_density, single.number_density);
+    EXPECT_EQ(shared.free_surface, single.free_surface);
+    EXPECT_EQ(shared.type, single.type);
+  }
+  for (int step = 1; step <= steps; ++step) {
+    here.step();
+    alone.step();
+    const StepReport& report = here.report();
+    EXPECT_EQ(report.step, step);
+    EXPECT_EQ(report.in, report.out + report.fluid) << "step " << step;
+    EXPECT_EQ(report.lost, 0);
+    EXPECT_EQ(report.in, alone.report().in) << "step " << step;
+    EXPECT_EQ(report.out, alone.report().out) << "step " << step;
+    EXPECT_EQ(report.particles, alone.report().particles) << "step " << step;
+  }
+  EXPECT_NEAR(here.report().time, alone.report().time, 1e-12 * alone.report().time);
+  const State<Dim> shared(MPI_COMM_WORLD, here.particles()), single(MPI_COMM_SELF, alone.particles());
+  EXPECT_EQ(shared.type, single.type);
+  ASSERT_EQ(shared.position.size(), single.position.size());
+  double farthest = 0.0;
+  for (const auto& [id, position] : single.position)
+    farthest = std::max(farthest, norm(shared.position.at(id) - position) / spacing);
+  EXPECT_LT(farthest, 1e-8);
+  testing::Test::RecordProperty("farthest_dp", fmt::format("{:.2e}", farthest));
+  if (rank_of(MPI_COMM_WORLD) == 0)
+    fmt::print("  largest difference of a position after {} steps: {:.2e} dp; kinetic energy {:.6g} J, out {}\n", steps,
+               farthest, here.report().kinetic_energy, here.report().out);
+}
+
+TEST(Run, ImpactingJetIsThatOfASingleRank) { expect_the_same_run<2>(jet_case(), 100); }
+
+TEST(Run, SteadyJetIsThatOfASingleRank) { expect_the_same_run<2>(jet_case({"jet.start=\"steady\""}), 100); }
+
+TEST(Run, IsThatOfASingleRankWithPTScotch) {
+  expect_the_same_run<2>(jet_case({"parallel.partitioner=\"ptscotch\""}), 30);
+}
+
+TEST(Run, IsThatOfASingleRankWithTheSingularKernel) {
+  expect_the_same_run<2>(jet_case({"kernel.type=\"singular\""}), 30);
+}
+
+TEST(Run, IsThatOfASingleRankWhereItIsRepartitioned) {
+  const Config config = jet_case({"parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"});
+  // That it happens: wall particles do not move, so only a new partition changes their owners.
+  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  const auto own_walls = [&] {
+    std::set<std::int64_t> ids;
+    const auto& particles = simulation.particles();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::wall) ids.insert(particles.id[i]);
+    return ids;
+  };
+  const auto at_start = own_walls();
+  for (int step = 0; step < 100; ++step) simulation.step();
+  EXPECT_EQ(any_rank(MPI_COMM_WORLD, own_walls() != at_start), ranks_of(MPI_COMM_WORLD) > 1);
+
+  expect_the_same_run<2>(config, 100);
+}
+
+TEST(Run, ShearWaveIsThatOfASingleRank) { expect_the_same_run<2>(shipped_case("shear-wave.toml", {tight}), 20); }
+
+TEST(Run, TankIsThatOfASingleRank) { expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight}), 100); }
+
+TEST(Run, TankInThreeDimensionsIsThatOfASingleRank) {
+  expect_the_same_run<3>(shipped_case("hydrostatic-3d.toml", {tight}), 5);
+}
+
+// Particles enter and leave; nothing is lost on the way.
+TEST(Run, BalancesParticlesAtTheInletAndTheOutlets) {
+  const Config config = jet_case({"plate.begin=-0.4", "plate.end=0.6", "pressure.tolerance=1e-6"});
+  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  const std::int64_t at_start = simulation.report().in;
+  EXPECT_EQ(simulation.report().fluid, at_start);
+  while (simulation.report().time < 0.8) {
+    simulation.step();
+    ASSERT_EQ(simulation.report().in, simulation.report().out + simulation.report().fluid);
+  }
+  EXPECT_NEAR(static_cast<double>(simulation.report().in - at_start), 0.8 / 0.04 * 10, 10.0);
+  EXPECT_GT(simulation.report().out, 50);
+  const auto ids = gather_by_id(MPI_COMM_WORLD, simulation.particles(), simulation.particles().id);
+  EXPECT_EQ(static_cast<std::int64_t>(ids.size()), simulation.report().particles);
+}
+
+TEST(Run, StepIsBoundedByTheCourantNumber) {
+  Simulation<2> simulation(MPI_COMM_WORLD, jet_case({"time.dt=1e-2", "time.cfl=0.1"}));
+  simulation.step();
+  EXPECT_EQ(simulation.report().limit, StepLimit::cfl);
+  EXPECT_NEAR(simulation.report().dt, 0.1 * 0.04 / 1.0, 1e-12);
+  Simulation<2> slow(MPI_COMM_WORLD, jet_case({"time.dt=1e-3"}));
+  slow.step();
+  EXPECT_EQ(slow.report().limit, StepLimit::case_dt);
+  EXPECT_EQ(slow.report().dt, 1e-3);
+}
+
+/// The failure of a run, on every rank.
+SolveError failure_of(const Config& config) {
+  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  try {
+    for (int step = 0; step < 50; ++step) simulation.step();
+  } catch (const SolveError& error) {
+    return error;
+  }
+  return {-1, "none", "no failure"};
+}
+
+TEST(Run, EndsWhereTheSpeedPassesItsBound) {
+  const SolveError error = failure_of(jet_case({"time.max_speed=1.2"}));
+  EXPECT_EQ(error.phase(), "correct");
+  EXPECT_GT(error.step(), 0);
+  EXPECT_NE(std::string(error.what()).find("time.max_speed"), std::string::npos) << error.what();
+}
+
+TEST(Run, EndsWhereThePressureDoesNotConverge) {
+  check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
+  const SolveError error = failure_of(jet_case());
+  check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
+  EXPECT_EQ(error.phase(), "pressure");
+  EXPECT_NE(std::string(error.what()).find("DIVERGED_ITS"), std::string::npos) << error.what();
+}
+
+}  // namespace
+}  // namespace impinge

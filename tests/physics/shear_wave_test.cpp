@@ -1,0 +1,48 @@
+// A shear wave in a periodic box decays as viscosity says.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "impinge/simulation.hpp"
+#include "shipped_case.hpp"
+
+namespace impinge {
+namespace {
+
+const MPI_Comm comm = MPI_COMM_WORLD;
+
+TEST(ShearWave, DecaysAtTheAnalyticRate) {
+  const Config config = shipped_case("shear-wave.toml");
+  Simulation<2> simulation(comm, config);
+  while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+
+  const double k = 2.0 * std::numbers::pi / config.periodic_box.size[1];
+  const double amplitude =
+      config.periodic_box.shear_speed * std::exp(-config.fluid.viscosity * k * k * simulation.report().time);
+  const auto& particles = simulation.particles();
+  double projection = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    const double wave = std::sin(k * particles.position[i][1]);
+    const Vec<2> velocity = particles.velocity[i];
+    projection += 2.0 * velocity[0] * wave;
+    square += std::pow(velocity[0] - amplitude * wave, 2) + std::pow(velocity[1], 2);
+  }
+  const auto count = static_cast<double>(simulation.report().fluid);
+  projection = sum_over_ranks(comm, projection) / count;
+  const double deviation = std::sqrt(sum_over_ranks(comm, square) / count);
+  if (rank_of(comm) == 0)
+    fmt::print("  t = {:.4f} s: amplitude {:.5f} m/s, analytic {:.5f} m/s ({:+.2f} %), RMS deviation {:.2f} %\n",
+               simulation.report().time, projection, amplitude, 100.0 * (projection / amplitude - 1.0),
+               100.0 * deviation / amplitude);
+  RecordProperty("amplitude_ratio", fmt::format("{:.4f}", projection / amplitude));
+  RecordProperty("rms_deviation", fmt::format("{:.4f}", deviation / amplitude));
+  EXPECT_EQ(simulation.report().lost, 0);
+  EXPECT_NEAR(projection / amplitude, 1.0, 0.03);
+  EXPECT_LT(deviation, 0.03 * amplitude);
+}
+
+}  // namespace
+}  // namespace impinge

@@ -1,0 +1,87 @@
+// The kernels against the constants of numerics.md section 1.
+
+#include "impinge/kernel.hpp"
+
+#include <gtest/gtest.h>
+
+#include "impinge/types.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr double printed = 5e-7;  // half a unit of the last printed digit
+
+/// Number density of a particle `depth` rows below a flat surface of the square lattice, kernel (3), over n0.
+double relative_density_below_surface(int depth) {
+  constexpr double radius = 2.1;
+  double sum = 0.0;
+  for (int x = -3; x <= 3; ++x)
+    for (int y = -3; y <= depth; ++y)
+      if (x != 0 || y != 0) sum += NonSingularKernel::weight(norm(Vec<2>{{1.0 * x, 1.0 * y}}), radius);
+  return sum / lattice_sums<2>(KernelType::non_singular, radius).number_density;
+}
+
+TEST(LatticeSums, OfTheNonSingularKernel) {
+  EXPECT_NEAR(lattice_sums<2>(KernelType::non_singular, 2.1).number_density, 4.915982, printed);
+  EXPECT_NEAR(lattice_sums<2>(KernelType::non_singular, 4.01).number_density, 24.671676, printed);
+  EXPECT_NEAR(lattice_sums<2>(KernelType::non_singular, 4.01).lambda, 4.082879, printed);
+}
+
+TEST(LatticeSums, OfTheSingularKernel) {
+  EXPECT_NEAR(lattice_sums<2>(KernelType::singular, 2.1).number_density, 6.539697, printed);
+  EXPECT_NEAR(lattice_sums<2>(KernelType::singular, 4.01).number_density, 35.818246, printed);
+  EXPECT_NEAR(lattice_sums<2>(KernelType::singular, 4.01).lambda, 3.721482, printed);
+}
+
+TEST(LatticeSums, OfAFlatSurface) {
+  EXPECT_NEAR(lattice_sums<2>(KernelType::non_singular, 2.1).surface_asymmetry, 0.5648, 5e-5);
+  EXPECT_NEAR(relative_density_below_surface(0), 0.6718, 5e-5);
+  EXPECT_NEAR(relative_density_below_surface(1), 0.9914, 5e-5);
+  EXPECT_NEAR(relative_density_below_surface(2), 1.0, 1e-14);
+}
+
+// Radius 1.2 reaches the six nearest neighbours only, 1.5 the twelve behind them too.
+TEST(LatticeSums, OfTheCubicLattice) {
+  const LatticeSums nearest = lattice_sums<3>(KernelType::singular, 1.2);
+  EXPECT_NEAR(nearest.number_density, 6.0 * 0.2, 1e-14);
+  EXPECT_NEAR(nearest.lambda, 1.0, 1e-14);
+  EXPECT_NEAR(nearest.surface_asymmetry, 3.0 / 6.0, 1e-14);
+
+  const double diagonal = 1.5 / std::sqrt(2.0) - 1.0;
+  const LatticeSums next = lattice_sums<3>(KernelType::singular, 1.5);
+  EXPECT_NEAR(next.number_density, 6.0 * 0.5 + 12.0 * diagonal, 1e-14);
+  EXPECT_NEAR(next.lambda, (6.0 * 0.5 + 24.0 * diagonal) / (6.0 * 0.5 + 12.0 * diagonal), 1e-14);
+}
+
+template <class Kernel>
+void expect_decreasing_to_zero() {
+  constexpr double radius = 0.042;
+  for (int k = 1; k < 100; ++k)
+    EXPECT_GT(Kernel::weight(0.01 * k * radius, radius), Kernel::weight(0.01 * (k + 1) * radius, radius));
+  EXPECT_GT(Kernel::weight(0.999999 * radius, radius), 0.0);
+  EXPECT_LT(Kernel::weight(0.999999 * radius, radius), 1e-5);
+  EXPECT_EQ(Kernel::weight(radius, radius), 0.0);
+  EXPECT_EQ(Kernel::weight(2.0 * radius, radius), 0.0);
+}
+
+TEST(Kernel, DecreasesToZeroAtTheEffectiveRadius) {
+  expect_decreasing_to_zero<NonSingularKernel>();
+  expect_decreasing_to_zero<SingularKernel>();
+}
+
+TEST(Kernel, HasThePapersValues) {
+  EXPECT_NEAR(NonSingularKernel::weight(0.0, 2.1), 1.0 / 0.15 - 1.0, 1e-14);
+  EXPECT_NEAR(NonSingularKernel::weight(1.0, 2.0), 2.0 / 1.15 - 1.0, 1e-14);
+  EXPECT_EQ(SingularKernel::weight(1.0, 2.0), 1.0);
+}
+
+TEST(Kernel, IsChosenByItsType) {
+  const auto weight = [](KernelType type) {
+    return with_kernel(type, [](auto kernel) { return decltype(kernel)::weight(1.0, 2.0); });
+  };
+  EXPECT_EQ(weight(KernelType::non_singular), NonSingularKernel::weight(1.0, 2.0));
+  EXPECT_EQ(weight(KernelType::singular), SingularKernel::weight(1.0, 2.0));
+}
+
+}  // namespace
+}  // namespace impinge

@@ -1,0 +1,165 @@
+// The neighbour search against brute force.
+
+#include "impinge/neighbours.hpp"
+
+#include <set>
+
+#include "cloud.hpp"
+#include "dimensions.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr double near_radius = 2.1;
+constexpr double far_radius = 4.01;
+constexpr int reach = 2;
+
+template <class Dimension>
+class Neighbours : public testing::Test {
+ protected:
+  static constexpr int Dim = Dimension::value;
+
+  static constexpr std::array<int, Dim> extent() {
+    if constexpr (Dim == 2) {
+      return {17, 14};
+    } else {
+      return {9, 8, 10};
+    }
+  }
+
+  static CellGrid<Dim> cells() {
+    Box<Dim> box;
+    for (int k = 0; k < Dim; ++k) box.high[k] = extent()[static_cast<std::size_t>(k)];
+    return CellGrid<Dim>(box, {}, far_radius).refined(reach);
+  }
+
+  /// A cloud of all types.
+  static Particles<Dim> cloud() {
+    Particles<Dim> all = make_cloud<Dim>(extent(), 0.45);
+    for (std::size_t i = 0; i < all.type.size(); ++i) all.type[i] = static_cast<ParticleType>((i * i + i / 7) % 4);
+    return all;
+  }
+
+  static Particles<Dim> all_owned() {
+    return sorted(cells(), cloud(), [](const auto&) { return true; });
+  }
+
+  /// The cells of the first half along x are owned; those of the second stand in the halo, sent by two ranks.
+  static Particles<Dim> half_owned() {
+    const CellGrid<Dim> grid = cells();
+    const int half = grid.extent()[0] / 2;
+    const auto part = [&](const ParticleRecord<Dim>& record) {
+      const auto at = grid.coordinates(record.position);
+      return at[0] < half ? 0 : at[1] % 2 == 0 ? 1 : 2;
+    };
+    Particles<Dim> particles = sorted(grid, cloud(), [&](const auto& record) { return part(record) == 0; });
+    const int owned = particles.owned;
+    for (const int sender : {2, 1}) {
+      const Particles<Dim> sent = sorted(grid, cloud(), [&](const auto& record) { return part(record) == sender; });
+      for (int i = 0; i < sent.owned; ++i) particles.append(sent.record(i));
+    }
+    particles.owned = owned;
+    return particles;
+  }
+
+  static NeighbourSearch<Dim> search(const Particles<Dim>& particles, KernelType kernel = KernelType::non_singular) {
+    NeighbourSearch<Dim> found(cells(), reach, kernel, near_radius, far_radius);
+    found.search(particles);
+    return found;
+  }
+
+  static bool has_row(ParticleType type) { return type == ParticleType::fluid || type == ParticleType::wall; }
+
+  static std::vector<std::int64_t> neighbour_ids(const PairList& list, const Particles<Dim>& particles, int i) {
+    std::vector<std::int64_t> ids;
+    for (int k = list.begin(i); k < list.end(i); ++k)
+      ids.push_back(particles.id[static_cast<std::size_t>(list.index[static_cast<std::size_t>(k)])]);
+    return ids;
+  }
+
+  template <class Kernel>
+  static void expect_brute_force_pairs(const Particles<Dim>& particles, const PairList& list, double radius) {
+    ASSERT_EQ(list.rows(), particles.owned);
+    std::int64_t pairs = 0;
+    for (int i = 0; i < particles.owned; ++i) {
+      const auto self = static_cast<std::size_t>(i);
+      std::set<std::pair<int, double>> expected, actual;
+      if (has_row(particles.type[self])) {
+        for (int j = 0; j < particles.size(); ++j) {
+          const double r = norm(particles.position[static_cast<std::size_t>(j)] - particles.position[self]);
+          if (j != i && r < radius) expected.emplace(j, Kernel::weight(r, radius));
+        }
+      }
+      for (int k = list.begin(i); k < list.end(i); ++k)
+        actual.emplace(list.index[static_cast<std::size_t>(k)], list.weight[static_cast<std::size_t>(k)]);
+      ASSERT_EQ(actual, expected) << "particle " << i;
+      ASSERT_EQ(static_cast<int>(actual.size()), list.end(i) - list.begin(i)) << "a pair is listed twice";
+      pairs += static_cast<std::int64_t>(actual.size());
+    }
+    EXPECT_EQ(list.pairs(), pairs);
+    EXPECT_GT(pairs, 0);
+  }
+};
+TYPED_TEST_SUITE(Neighbours, Dimensions);
+
+TYPED_TEST(Neighbours, AreThoseOfBruteForce) {
+  for (const auto& particles : {this->all_owned(), this->half_owned()}) {
+    const auto non_singular = this->search(particles);
+    this->template expect_brute_force_pairs<NonSingularKernel>(particles, non_singular.near(), near_radius);
+    this->template expect_brute_force_pairs<NonSingularKernel>(particles, non_singular.far(), far_radius);
+    const auto singular = this->search(particles, KernelType::singular);
+    this->template expect_brute_force_pairs<SingularKernel>(particles, singular.near(), near_radius);
+    this->template expect_brute_force_pairs<SingularKernel>(particles, singular.far(), far_radius);
+  }
+}
+
+TYPED_TEST(Neighbours, RowsKeepTheirOrderWhoeverOwnsTheParticles) {
+  const auto whole = this->all_owned();
+  const auto half = this->half_owned();
+  ASSERT_GT(half.owned, 0);
+  ASSERT_LT(half.owned, half.size());
+  const auto in_whole = this->search(whole);
+  const auto in_half = this->search(half);
+  for (int i = 0; i < half.owned; ++i) {
+    const auto id = half.id[static_cast<std::size_t>(i)];
+    const int j = static_cast<int>(std::find(whole.id.begin(), whole.id.end(), id) - whole.id.begin());
+    EXPECT_EQ(this->neighbour_ids(in_half.far(), half, i), this->neighbour_ids(in_whole.far(), whole, j));
+    EXPECT_EQ(this->neighbour_ids(in_half.near(), half, i), this->neighbour_ids(in_whole.near(), whole, j));
+  }
+}
+
+TYPED_TEST(Neighbours, ColumnsOfOwnedParticlesAscend) {
+  const auto particles = this->half_owned();
+  const auto found = this->search(particles);
+  for (const PairList* list : {&found.near(), &found.far()}) {
+    for (int i = 0; i < particles.owned; ++i) {
+      int last = -1;
+      for (int k = list->begin(i); k < list->end(i); ++k) {
+        const int column = list->index[static_cast<std::size_t>(k)];
+        if (column >= particles.owned) continue;
+        EXPECT_GT(column, last);
+        last = column;
+      }
+    }
+  }
+}
+
+TYPED_TEST(Neighbours, OfNoParticlesAreNone) {
+  const auto found = this->search({});
+  EXPECT_EQ(found.near().rows(), 0);
+  EXPECT_EQ(found.far().rows(), 0);
+  EXPECT_EQ(found.far().pairs(), 0);
+}
+
+TYPED_TEST(Neighbours, AreSearchedAnewEachTime) {
+  auto particles = this->all_owned();
+  auto found = this->search(particles);
+  const auto pairs = found.far().pairs();
+  particles = this->half_owned();
+  found.search(particles);
+  EXPECT_LT(found.far().pairs(), pairs);
+  this->template expect_brute_force_pairs<NonSingularKernel>(particles, found.far(), far_radius);
+}
+
+}  // namespace
+}  // namespace impinge
