@@ -20,6 +20,9 @@ LEVELS = [
     ["output", "progress"],
     ["command_line", "run"],
     ["main"],
+    ["post/jet_comparison"],
+    ["post/validation"],
+    ["post/validate_main"],
 ]
 
 
