@@ -50,7 +50,7 @@ struct Config {
   } free_surface;
 
   struct {
-    double distance = 0.5;     ///< [dp]; 0 switches collisions off
+    double distance = 0.8;     ///< [dp]; 0 switches collisions off
     double restitution = 0.2;  ///< [-]
   } collision;
 
