@@ -35,10 +35,17 @@ int CellGrid<Dim>::count() const {
 }
 
 template <int Dim>
+Vec<Dim> CellGrid<Dim>::in_edges(const Vec<Dim>& position) const {
+  Vec<Dim> at;
+  for (int k = 0; k < Dim; ++k) at[k] = (position[k] - low_[k]) / edge_[k];
+  return at;
+}
+
+template <int Dim>
 std::array<int, Dim> CellGrid<Dim>::coordinates(const Vec<Dim>& position) const {
+  const Vec<Dim> in_edges = this->in_edges(position);
   std::array<int, Dim> at;
-  for (int k = 0; k < Dim; ++k)
-    at[static_cast<std::size_t>(k)] = static_cast<int>(std::floor((position[k] - low_[k]) / edge_[k]));
+  for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = static_cast<int>(std::floor(in_edges[k]));
   return at;
 }
 

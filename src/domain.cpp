@@ -100,6 +100,7 @@ void Domain<Dim>::partition(const Particles<Dim>& particles) {
   const double total = std::accumulate(rank_work.begin(), rank_work.end(), 0.0);
   const double largest = *std::max_element(rank_work.begin(), rank_work.end());
   achieved_imbalance_ = total > 0.0 ? largest * static_cast<double>(rank_work.size()) / total : 1.0;
+  ++partitions_;
   find_halo_targets();
 }
 

@@ -69,7 +69,8 @@ void PressureSolver::Block::append_row(std::vector<std::pair<PetscInt, double>>&
 }
 
 PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), tolerance_(tolerance) {
-  char chosen[64] = "hypre";
+  check(PCRegister(two_level, [](PC preconditioner) { return PCSetType(preconditioner, PCSHELL); }));
+  char chosen[64] = "";
   check(PetscOptionsGetString(nullptr, prefix, "-pc_type", chosen, sizeof chosen, nullptr));
   if (std::string(chosen) == "hypre") {
     set_default_option("pc_hypre_boomeramg_coarsen_type", "HMIS");
@@ -90,10 +91,17 @@ void PressureSolver::create_solver() {
   // A warm start may begin far above |b|: that is no divergence.
   check(KSPSetTolerances(solver_, tolerance_, PETSC_DEFAULT, 1e20, 10000));
   check(KSPSetInitialGuessNonzero(solver_, PETSC_TRUE));
-  PC preconditioner;
-  check(KSPGetPC(solver_, &preconditioner));
-  check(PCSetType(preconditioner, PCHYPRE));
+  check(PCSetType(preconditioner(), two_level));
   check(KSPSetFromOptions(solver_));
+  PetscBool is_shell = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(preconditioner()), PCSHELL, &is_shell));
+  is_two_level_ = is_shell == PETSC_TRUE;
+}
+
+PC PressureSolver::preconditioner() const {
+  PC result = nullptr;
+  check(KSPGetPC(solver_, &result));
+  return result;
 }
 
 void PressureSolver::set_default_option(const char* name, const char* value) {

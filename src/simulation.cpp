@@ -51,6 +51,7 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
       search_(domain_.sorting_cells(), Domain<Dim>::cell_parts, config.kernel.type,
               config.kernel.radius * config.particles.spacing, reach_of<Dim>(config)),
       pressure_solver_(comm, config.pressure.tolerance) {
+  if (pressure_solver_.is_two_level()) two_level_.emplace(comm, domain_.cells());
   for (int k = 0; k < Dim; ++k) gravity_[k] = config.fluid.gravity[static_cast<std::size_t>(k)];
   geometry_->fill(rank_of(comm), ranks_of(comm), particles_);
   domain_.partition(particles_);
@@ -203,8 +204,15 @@ void Simulation<Dim>::solve_pressure() {
       const double crowding = (particles_.number_density[self] - n0) / n0;
       source_[self] = (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
     }
-    pressure_solver_.assemble(
-        {search_.far(), role_, domain_.rows(), source_, laplacian_factor_, far_sums_.number_density}, domain_.halo());
+    const PressureEquation equation{search_.far(),           role_, domain_.rows(), source_, laplacian_factor_,
+                                    far_sums_.number_density};
+    pressure_solver_.assemble(equation, domain_.halo());
+    if (two_level_) {
+      if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
+        two_level_->set_owners(domain_.owners());
+      two_level_->update(equation, particles_.position, pressure_solver_.matrix(), report_.pressure.iterations);
+      two_level_->attach(pressure_solver_.preconditioner());
+    }
   }
   const LogStage log(stage(solving));
   report_.pressure = pressure_solver_.solve(particles_.pressure);
@@ -283,7 +291,7 @@ std::size_t Simulation<Dim>::bytes() const {
   const auto n = static_cast<std::size_t>(particles_.size());
   const std::size_t per_particle = sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t) +
                                    sizeof(PressureRole) + sizeof(double) + sizeof(Vec<Dim>) + sizeof(PetscInt);
-  return n * per_particle + search_.bytes() + pressure_solver_.bytes();
+  return n * per_particle + search_.bytes() + pressure_solver_.bytes() + (two_level_ ? two_level_->bytes() : 0);
 }
 
 template <int Dim>

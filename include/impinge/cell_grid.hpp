@@ -22,6 +22,9 @@ class CellGrid {
   /// Cell of a position, or -1 outside the box (a position that is not a number is outside).
   int cell(const Vec<Dim>& position) const;
 
+  /// The position from the low corner in units of the cells' edges [-].
+  Vec<Dim> in_edges(const Vec<Dim>& position) const;
+
   /// Integer coordinates of the cell that holds a position; beyond the box they go on, as periodic images need.
   std::array<int, Dim> coordinates(const Vec<Dim>& position) const;
 
@@ -35,6 +38,7 @@ class CellGrid {
   Vec<Dim> wrapped(Vec<Dim> position) const;
 
   const std::array<int, Dim>& extent() const { return extent_; }
+  const std::array<bool, Dim>& periodic() const { return periodic_; }
 
  private:
   Vec<Dim> low_;

@@ -25,6 +25,13 @@ class Domain {
 
   MPI_Comm comm() const { return comm_; }
 
+  /// The background cells and the rank of each.
+  const CellGrid<Dim>& cells() const { return cells_; }
+  std::span<const int> owners() const { return owner_; }
+
+  /// How often the cells were distributed.
+  int partitions() const { return partitions_; }
+
   /// The cells in whose order owned particles are sorted.
   const CellGrid<Dim>& sorting_cells() const { return fine_; }
 
@@ -76,6 +83,7 @@ class Domain {
   std::vector<int> target_start_;  // per cell: range in targets_
   std::vector<Target> targets_;    // who sees the particles of a cell of this rank
   double achieved_imbalance_ = 1.0;
+  int partitions_ = 0;
   Halo halo_;
   std::vector<Vec<Dim>> halo_shift_;  // per particle sent
   std::vector<PetscInt> rows_;

@@ -43,9 +43,18 @@ struct PressureReport {
 /// removed, one particle is pinned, and the pressure's lowest value is set to 0.
 class PressureSolver {
  public:
-  /// `tolerance`: relative residual in the unpreconditioned norm. Defaults (CG with hypre) give way to the PETSc
+  /// The default preconditioner, a shell that the owner of this object fills before each solve.
+  static constexpr const char* two_level = "two_level";
+
+  /// `tolerance`: relative residual in the unpreconditioned norm. Defaults (CG with two_level) give way to the PETSc
   /// options database. Collective.
   PressureSolver(MPI_Comm comm, double tolerance);
+
+  /// True unless the options database chose another preconditioner.
+  bool is_two_level() const { return is_two_level_; }
+
+  /// Preconditioner of the coming solve, made anew by assemble.
+  PC preconditioner() const;
 
   /// Builds matrix and right-hand side. Collective.
   void assemble(const PressureEquation& equation, const Halo& halo);
@@ -77,6 +86,7 @@ class PressureSolver {
 
   MPI_Comm comm_;
   double tolerance_;
+  bool is_two_level_ = false;
   PetscSolver solver_;
   std::vector<std::string> default_options_;
   Block diagonal_;      // columns of this rank, local

@@ -2,6 +2,7 @@
 // The state of a run and one time step.
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "impinge/geometry.hpp"
 #include "impinge/neighbours.hpp"
 #include "impinge/pressure.hpp"
+#include "impinge/two_level.hpp"
 
 namespace impinge {
 
@@ -97,6 +99,8 @@ class Simulation {
   Domain<Dim> domain_;
   NeighbourSearch<Dim> search_;
   PressureSolver pressure_solver_;
+  std::optional<TwoLevelPreconditioner<Dim>> two_level_;  // if the options chose no other preconditioner
+  int partitions_seen_ = 0;                               // by two_level_
   Particles<Dim> particles_;
   StepReport report_;
   double window_begin_ = 0.0;

@@ -1,0 +1,82 @@
+#pragma once
+// A two-level preconditioner for the pressure equation: Jacobi and a coarse grid of about one kernel radius.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "impinge/cell_grid.hpp"
+#include "impinge/petsc.hpp"
+#include "impinge/pressure.hpp"
+
+namespace impinge {
+
+/// z = w D^-1 r + P A_c^-1 P^T r, symmetric and positive definite as A is. One Jacobi sweep damps all that is shorter
+/// than the wide kernel; the rest lives on the centres of the background cells. P: (bi, tri)linear interpolation from
+/// the cells to the unknown particles; A_c = P^T A P; A_c^-1: one cycle of an algebraic multigrid, a KSP of prefix
+/// `ppe_coarse_`. P is that of the current positions; A_c is kept until iterations grow.
+template <int Dim>
+class TwoLevelPreconditioner {
+ public:
+  /// `cells`: background cells whose edge is at least the Laplacian's radius. Collective.
+  TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells);
+
+  /// Takes the rank of each cell. Collective.
+  void set_owners(std::span<const int> owner);
+
+  /// Follows the particles and renews the coarse matrix where it is due. `position`: owned and halo. `iterations`: of
+  /// the solve before. Collective.
+  void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, Mat matrix, int iterations);
+
+  /// Makes `preconditioner` (a shell) this one. Collective.
+  void attach(PC preconditioner);
+
+  /// How often the coarse matrix was built.
+  int builds() const { return builds_; }
+
+  /// Memory of interpolation and node lists [bytes].
+  std::size_t bytes() const;
+
+ private:
+  static constexpr int corners = 1 << Dim;
+
+  /// A particle between the centres of the cells `base` and `base` + 1 along each axis.
+  struct Place {
+    std::array<int, Dim> base;
+    std::array<double, corners> weight;  // of the cells base + (0 or 1 along each axis), first axis fastest
+  };
+
+  void create_coarse_solver();
+  int local_node(const std::array<int, Dim>& coordinates) const;
+  Place place(const Vec<Dim>& position) const;
+  void find_interpolation(const PressureEquation& equation, std::span<const Vec<Dim>> position);
+  void number_nodes();
+  void build_coarse_matrix(const PressureEquation& equation, std::span<const Vec<Dim>> position);
+  void apply(::Vec residual, ::Vec result);
+
+  MPI_Comm comm_;
+  CellGrid<Dim> cells_;
+  std::vector<int> node_of_cell_;  // local node of a cell, -1 far from this rank
+  std::vector<int> cell_of_node_;
+  std::size_t owned_cells_ = 0;
+  PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
+
+  std::vector<double> diagonal_;   // of A, owned rows
+  std::vector<int> node_;          // P: corners entries per owned particle, -1 for none
+  std::vector<double> weight_;     // likewise
+  std::vector<PetscInt> number_;   // row of A_c of a local node, -1 for none
+  std::vector<std::size_t> root_;  // root of each row of A_c on this rank
+  std::vector<double> root_value_;
+  std::vector<double> leaf_value_;
+  PetscMatrix coarse_matrix_;
+  PetscSolver coarse_solver_;
+  PetscVector coarse_residual_;
+  PetscVector coarse_solution_;
+
+  bool stale_ = true;
+  int builds_ = 0;
+  int age_ = 0;               // solves since the last build
+  int fresh_iterations_ = 0;  // of the first of them
+};
+
+}  // namespace impinge

@@ -1,0 +1,324 @@
+#include "impinge/two_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace impinge {
+namespace {
+
+constexpr double jacobi_weight = 1.5;
+constexpr double least_node_weight = 0.05;  // a node with less interpolation weight is left out
+constexpr int oldest = 10;                  // solves with one coarse matrix
+constexpr double most_growth = 1.3;         // of the iterations
+
+constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+
+/// Calls use(k, offset) for the points of a cube of `size` points along each axis, offsets from `first` on.
+template <int Dim, class Use>
+void for_cube(int size, int first, Use&& use) {
+  for (int k = 0; k < power(size, Dim); ++k) {
+    std::array<int, Dim> offset;
+    int rest = k;
+    for (int& component : offset) {
+      component = rest % size + first;
+      rest /= size;
+    }
+    use(k, offset);
+  }
+}
+
+/// The k of a point of such a cube, from its offset to the first point.
+template <int Dim>
+int place_in_cube(int size, const std::array<int, Dim>& offset) {
+  int k = 0;
+  for (std::size_t axis = Dim; axis-- > 0;) k = k * size + offset[axis];
+  return k;
+}
+
+template <int Dim>
+std::array<int, Dim> sum(std::array<int, Dim> a, const std::array<int, Dim>& b) {
+  for (std::size_t k = 0; k < Dim; ++k) a[k] += b[k];
+  return a;
+}
+
+}  // namespace
+
+template <int Dim>
+TwoLevelPreconditioner<Dim>::TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells)
+    : comm_(comm), cells_(cells) {
+  create_coarse_solver();
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
+  check(KSPCreate(comm_, coarse_solver_.address()));
+  check(KSPSetOptionsPrefix(coarse_solver_, "ppe_coarse_"));
+  check(KSPSetType(coarse_solver_, KSPPREONLY));
+  PC preconditioner;
+  check(KSPGetPC(coarse_solver_, &preconditioner));
+  check(PCSetType(preconditioner, PCHYPRE));
+  check(KSPSetFromOptions(coarse_solver_));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
+  // Root of a cell: its place among the cells of its rank.
+  std::vector<int> count(static_cast<std::size_t>(ranks_of(comm_)), 0);
+  std::vector<PetscInt> root(owner.size());
+  for (std::size_t cell = 0; cell < owner.size(); ++cell) root[cell] = count[static_cast<std::size_t>(owner[cell])]++;
+  const int self = rank_of(comm_);
+  owned_cells_ = static_cast<std::size_t>(count[static_cast<std::size_t>(self)]);
+
+  // Particles of this rank touch the next cells, those of the halo the next but one.
+  node_of_cell_.assign(owner.size(), -1);
+  cell_of_node_.clear();
+  std::vector<PetscSFNode> remote;
+  for (std::size_t cell = 0; cell < owner.size(); ++cell) {
+    if (owner[cell] != self) continue;
+    const auto centre = cells_.coordinates(static_cast<int>(cell));
+    for_cube<Dim>(5, -2, [&](int, const std::array<int, Dim>& offset) {
+      Vec<Dim> shift;
+      const int near = cells_.wrapped_cell(sum<Dim>(centre, offset), shift);
+      if (near < 0 || node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
+      node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
+      cell_of_node_.push_back(near);
+      remote.push_back({owner[static_cast<std::size_t>(near)], root[static_cast<std::size_t>(near)]});
+    });
+  }
+  check(PetscSFCreate(comm_, nodes_.address()));
+  check(PetscSFSetGraph(nodes_, static_cast<PetscInt>(owned_cells_), static_cast<PetscInt>(remote.size()), nullptr,
+                        PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
+  check(PetscSFSetUp(nodes_));
+  root_value_.assign(owned_cells_, 0.0);
+  leaf_value_.assign(cell_of_node_.size(), 0.0);
+  number_.assign(cell_of_node_.size(), -1);
+  stale_ = true;
+}
+
+template <int Dim>
+int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordinates) const {
+  Vec<Dim> shift;
+  const int cell = cells_.wrapped_cell(coordinates, shift);
+  return cell < 0 ? -1 : node_of_cell_[static_cast<std::size_t>(cell)];
+}
+
+template <int Dim>
+typename TwoLevelPreconditioner<Dim>::Place TwoLevelPreconditioner<Dim>::place(const Vec<Dim>& position) const {
+  Place result;
+  Vec<Dim> upper;  // weight of base + 1
+  const Vec<Dim> in_edges = cells_.in_edges(position);
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    double at = in_edges[k] - 0.5;
+    if (!cells_.periodic()[axis]) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
+    const double base = std::floor(at);
+    result.base[axis] = static_cast<int>(base);
+    upper[k] = at - base;
+  }
+  for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+    double& weight = result.weight[static_cast<std::size_t>(c)];
+    weight = 1.0;
+    for (int k = 0; k < Dim; ++k) weight *= corner[static_cast<std::size_t>(k)] == 1 ? upper[k] : 1.0 - upper[k];
+  });
+  return result;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::find_interpolation(const PressureEquation& equation,
+                                                     std::span<const Vec<Dim>> position) {
+  const auto owned = static_cast<std::size_t>(equation.far.rows());
+  node_.assign(owned * corners, -1);
+  weight_.assign(owned * corners, 0.0);
+  for (std::size_t i = 0; i < owned; ++i) {
+    if (equation.role[i] != PressureRole::unknown) continue;
+    const Place at = place(position[i]);
+    for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+      const std::size_t entry = i * corners + static_cast<std::size_t>(c);
+      weight_[entry] = at.weight[static_cast<std::size_t>(c)];
+      if (weight_[entry] > 0.0) node_[entry] = local_node(sum<Dim>(at.base, corner));
+    });
+  }
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::number_nodes() {
+  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  std::fill(root_value_.begin(), root_value_.end(), 0.0);
+  for (std::size_t k = 0; k < node_.size(); ++k)
+    if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k];
+  check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  root_.clear();
+  for (std::size_t k = 0; k < owned_cells_; ++k)
+    if (root_value_[k] >= least_node_weight) root_.push_back(k);
+  PetscInt next = 0;
+  const auto n_own = static_cast<PetscInt>(root_.size());
+  MPI_Exscan(&n_own, &next, 1, MPIU_INT, MPI_SUM, comm_);
+  std::vector<PetscInt> root_number(owned_cells_, -1);
+  for (const std::size_t k : root_) root_number[k] = next++;
+  check(PetscSFBcastBegin(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
+  check(PetscSFBcastEnd(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& equation,
+                                                      std::span<const Vec<Dim>> position) {
+  // Row by row: (A P)_i on the 4^Dim nodes that neighbours of i touch, then P^T (A P) on the 5^Dim around each node.
+  constexpr int near_size = power(4, Dim);
+  constexpr int stencil_size = power(5, Dim);
+  std::array<int, corners> corner_in_near, corner_in_stencil;
+  for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+    corner_in_near[static_cast<std::size_t>(c)] = place_in_cube<Dim>(4, corner);
+    corner_in_stencil[static_cast<std::size_t>(c)] = place_in_cube<Dim>(5, corner);
+  });
+  std::array<int, near_size> near_in_stencil;
+  for_cube<Dim>(4, 1, [&](int q, const std::array<int, Dim>& offset) {
+    near_in_stencil[static_cast<std::size_t>(q)] = place_in_cube<Dim>(5, offset);
+  });
+
+  std::vector<Place> places(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (equation.role[i] == PressureRole::unknown) places[i] = place(position[i]);
+
+  std::vector<double> stencil(cell_of_node_.size() * stencil_size, 0.0);
+  std::array<double, near_size> row;
+  for (int i = 0; i < equation.far.rows(); ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (equation.role[self] != PressureRole::unknown) continue;
+    row.fill(0.0);
+    const auto add = [&](std::size_t j, double entry) {
+      std::array<int, Dim> offset;
+      for (std::size_t k = 0; k < Dim; ++k) offset[k] = places[j].base[k] - places[self].base[k] + 1;
+      const int first = place_in_cube<Dim>(4, offset);
+      for (std::size_t c = 0; c < corners; ++c)
+        row[static_cast<std::size_t>(first + corner_in_near[c])] += entry * places[j].weight[c];
+    };
+    add(self, diagonal_[self]);
+    for (int k = equation.far.begin(i); k < equation.far.end(i); ++k) {
+      const auto j = static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]);
+      if (equation.role[j] == PressureRole::unknown) add(j, -equation.far.weight[static_cast<std::size_t>(k)]);
+    }
+    for (std::size_t c = 0; c < corners; ++c) {
+      const int node = node_[self * corners + c];
+      if (node < 0) continue;
+      double* entries = &stencil[static_cast<std::size_t>(node) * stencil_size];
+      const double weight = places[self].weight[c];
+      for (std::size_t q = 0; q < near_size; ++q) entries[near_in_stencil[q] - corner_in_stencil[c]] += weight * row[q];
+    }
+  }
+
+  const auto n_own = static_cast<PetscInt>(root_.size());
+  check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, stencil_size, nullptr, stencil_size,
+                     nullptr, coarse_matrix_.address()));
+  std::vector<PetscInt> columns;
+  std::vector<double> values;
+  for (std::size_t node = 0; node < cell_of_node_.size(); ++node) {
+    if (number_[node] < 0) continue;
+    const auto centre = cells_.coordinates(cell_of_node_[node]);
+    columns.clear();
+    values.clear();
+    for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
+      const double value = stencil[node * stencil_size + static_cast<std::size_t>(k)];
+      if (value == 0.0) return;
+      const int other = local_node(sum<Dim>(centre, offset));
+      if (other < 0 || number_[static_cast<std::size_t>(other)] < 0) return;
+      columns.push_back(number_[static_cast<std::size_t>(other)]);
+      values.push_back(value);
+    });
+    check(MatSetValues(coarse_matrix_, 1, &number_[node], static_cast<PetscInt>(columns.size()), columns.data(),
+                       values.data(), ADD_VALUES));
+  }
+  check(MatAssemblyBegin(coarse_matrix_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(coarse_matrix_, MAT_FINAL_ASSEMBLY));
+  check(MatSetOption(coarse_matrix_, MAT_SPD, PETSC_TRUE));
+  check(MatCreateVecs(coarse_matrix_, coarse_solution_.address(), coarse_residual_.address()));
+  create_coarse_solver();
+  check(KSPSetOperators(coarse_solver_, coarse_matrix_, coarse_matrix_));
+  check(KSPSetUp(coarse_solver_));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::update(const PressureEquation& equation, std::span<const Vec<Dim>> position,
+                                         Mat matrix, int iterations) {
+  const auto owned = static_cast<PetscInt>(equation.far.rows());
+  diagonal_.resize(static_cast<std::size_t>(owned));
+  PetscVector diagonal;
+  check(VecCreateMPIWithArray(comm_, 1, owned, PETSC_DETERMINE, diagonal_.data(), diagonal.address()));
+  check(MatGetDiagonal(matrix, diagonal));
+  find_interpolation(equation, position);
+  if (age_ == 1) fresh_iterations_ = iterations;
+  if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
+    number_nodes();
+    build_coarse_matrix(equation, position);
+    stale_ = false;
+    age_ = 0;
+    ++builds_;
+  }
+  ++age_;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::attach(PC preconditioner) {
+  check(PCShellSetContext(preconditioner, this));
+  check(PCShellSetApply(preconditioner, [](PC shell, ::Vec residual, ::Vec result) -> PetscErrorCode {
+    void* self = nullptr;
+    PetscCall(PCShellGetContext(shell, &self));
+    try {
+      static_cast<TwoLevelPreconditioner*>(self)->apply(residual, result);
+    } catch (const PetscFailure& error) {  // must not pass through PETSc
+      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", error.what());
+    }
+    return 0;
+  }));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
+  const double* r = nullptr;
+  double* z = nullptr;
+  check(VecGetArrayRead(residual, &r));
+  check(VecGetArray(result, &z));
+  const std::size_t owned = diagonal_.size();
+  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  for (std::size_t i = 0; i < owned; ++i)
+    for (std::size_t k = i * corners; k < (i + 1) * corners; ++k)
+      if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k] * r[i];
+  std::fill(root_value_.begin(), root_value_.end(), 0.0);
+  check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+
+  double* coarse = nullptr;
+  check(VecGetArray(coarse_residual_, &coarse));
+  for (std::size_t k = 0; k < root_.size(); ++k) coarse[k] = root_value_[root_[k]];
+  check(VecRestoreArray(coarse_residual_, &coarse));
+  check(KSPSolve(coarse_solver_, coarse_residual_, coarse_solution_));
+  std::fill(root_value_.begin(), root_value_.end(), 0.0);
+  check(VecGetArray(coarse_solution_, &coarse));
+  for (std::size_t k = 0; k < root_.size(); ++k) root_value_[root_[k]] = coarse[k];
+  check(VecRestoreArray(coarse_solution_, &coarse));
+
+  check(PetscSFBcastBegin(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  check(PetscSFBcastEnd(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  for (std::size_t i = 0; i < owned; ++i) {
+    double value = jacobi_weight * r[i] / diagonal_[i];
+    for (std::size_t k = i * corners; k < (i + 1) * corners; ++k)
+      if (node_[k] >= 0) value += weight_[k] * leaf_value_[static_cast<std::size_t>(node_[k])];
+    z[i] = value;
+  }
+  check(VecRestoreArray(result, &z));
+  check(VecRestoreArrayRead(residual, &r));
+}
+
+template <int Dim>
+std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
+  return (diagonal_.capacity() + weight_.capacity() + root_value_.capacity() + leaf_value_.capacity()) *
+             sizeof(double) +
+         (node_.capacity() + node_of_cell_.capacity() + cell_of_node_.capacity()) * sizeof(int) +
+         number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
+}
+
+template class TwoLevelPreconditioner<2>;
+template class TwoLevelPreconditioner<3>;
+
+}  // namespace impinge
