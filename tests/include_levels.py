@@ -16,6 +16,7 @@ LEVELS = [
     ["cell_grid", "partition"],
     ["domain", "geometry", "jet_geometry", "neighbours"],
     ["operators", "pressure", "snapshot"],
+    ["two_level"],
     ["simulation"],
     ["output", "progress"],
     ["command_line", "run"],

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "cloud.hpp"
 #include "gather.hpp"
 #include "impinge/domain.hpp"
 #include "impinge/lattice.hpp"
+#include "impinge/two_level.hpp"
 
 namespace impinge {
 namespace {
@@ -90,7 +92,15 @@ class Distributed {
     source_.clear();
     for (int i = 0; i < particles_.owned; ++i)
       source_.push_back(source[static_cast<std::size_t>(particles_.id[static_cast<std::size_t>(i)])]);
-    solver_.assemble({search_.far(), role_, domain_.rows(), source_, factor, n0}, domain_.halo());
+    const PressureEquation equation{search_.far(), role_, domain_.rows(), source_, factor, n0};
+    solver_.assemble(equation, domain_.halo());
+    if (!solver_.is_two_level()) return;
+    if (!two_level_) {
+      two_level_.emplace(comm_, domain_.cells());
+      two_level_->set_owners(domain_.owners());
+    }
+    two_level_->update(equation, particles_.position, solver_.matrix(), 0);
+    two_level_->attach(solver_.preconditioner());
   }
 
   /// Solves from the guess in pressure(), at first zero.
@@ -133,6 +143,7 @@ class Distributed {
   Domain<2> domain_;
   NeighbourSearch<2> search_;
   PressureSolver solver_;
+  std::optional<TwoLevelPreconditioner<2>> two_level_;
   Particles<2> particles_;
   std::vector<PressureRole> role_;
   std::vector<double> source_;
@@ -388,7 +399,7 @@ TEST(Pressure, ReportsNonConvergenceOnEveryRank) {
 
 TEST(Pressure, ObeysTheOptionsDatabase) {
   const Problem problem = cloud(basin);
-  for (const char* preconditioner : {"jacobi", "gamg", "bjacobi"}) {
+  for (const char* preconditioner : {"jacobi", "gamg", "bjacobi", "hypre"}) {
     check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", preconditioner));
     Distributed system(MPI_COMM_WORLD, problem);
     check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
