@@ -18,7 +18,8 @@ constexpr const char* description =
 constexpr const char* footer = R"(
 PETSc options have a single dash; the pressure solver's start with -ppe_. An option that nobody uses is an error.
   -ppe_ksp_type cg                    Krylov method
-  -ppe_pc_type two_level|hypre|gamg|bjacobi|...   preconditioner; -ppe_coarse_pc_type: of the coarse grid
+  -ppe_pc_type two_level|hypre|gamg   preconditioner
+  -ppe_coarse_pc_type hypre|gamg      preconditioner of two_level's coarse grid
   -ppe_ksp_monitor                    residual of every iteration
   -log_view                           time of every phase of the step
 
