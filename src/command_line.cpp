@@ -59,6 +59,10 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
       ->disable_flag_override();
   app.add_flag("--check", line.check, "Validate the case; print its particles, memory and time step limits")
       ->disable_flag_override();
+  app.add_option("--plan", line.plan_ranks, "Decompose the case for 1 to 1000000 ranks; print balance, halo, memory")
+      ->option_text("RANKS")
+      ->check(CLI::Range(1, 1000000).description(""))
+      ->excludes("--check");
   app.add_option("--set", line.settings, "Set a key of the case, over its files; may be repeated")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);

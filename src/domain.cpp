@@ -20,26 +20,72 @@ double work_of(const Particles<Dim>& particles) {
   return work;
 }
 
-// Calls use(neighbour cell, shift) for the cells around a cell, itself excluded, in a fixed order.
-template <int Dim, class Use>
-void for_neighbour_cells(const CellGrid<Dim>& cells, int cell, Use&& use) {
-  const auto centre = cells.coordinates(cell);
-  const int combinations = Dim == 2 ? 9 : 27;
-  for (int code = 0; code < combinations; ++code) {
-    if (code == combinations / 2) continue;
-    auto at = centre;
-    int rest = code;
-    for (auto& coordinate : at) {
-      coordinate += rest % 3 - 1;
-      rest /= 3;
-    }
-    Vec<Dim> shift;
-    const int neighbour = cells.wrapped_cell(at, shift);
-    if (neighbour >= 0) use(neighbour, shift);
+}  // namespace
+
+template <int Dim>
+void add_work(const CellGrid<Dim>& cells, const Particles<Dim>& particles, std::span<int> work) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    const int cell = cells.cell(cells.wrapped(particles.position[i]));
+    if (cell >= 0) work[static_cast<std::size_t>(cell)] += work_of(particles.type[i]);
   }
 }
 
-}  // namespace
+template <int Dim>
+std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std::span<const int> work, int parts,
+                                  Partitioner partitioner) {
+  // The graph of the occupied cells.
+  std::vector<int> vertex_of(work.size(), -1);
+  CellGraph graph;
+  std::vector<int> cell_of;
+  for (std::size_t cell = 0; cell < work.size(); ++cell) {
+    if (work[cell] == 0) continue;
+    vertex_of[cell] = static_cast<int>(cell_of.size());
+    cell_of.push_back(static_cast<int>(cell));
+    graph.vertex_weight.push_back(work[cell]);
+  }
+  for (const int cell : cell_of) {
+    for_cells_around(cells, cell, 1, [&](int neighbour, const Vec<Dim>&) {
+      const auto n = static_cast<std::size_t>(neighbour);
+      if (vertex_of[n] < 0 || neighbour == cell) return;
+      graph.neighbour.push_back(vertex_of[n]);
+      graph.edge_weight.push_back(work[static_cast<std::size_t>(cell)] + work[n]);
+    });
+    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
+  }
+  const std::vector<int> part = partition_graph(comm, graph, parts, partitioner);
+
+  // Empty cells follow the nearest occupied one: a breadth-first walk from all occupied cells at once.
+  std::vector<int> owner(work.size(), -1);
+  std::deque<int> front;
+  for (std::size_t v = 0; v < cell_of.size(); ++v) {
+    owner[static_cast<std::size_t>(cell_of[v])] = part[v];
+    front.push_back(cell_of[v]);
+  }
+  while (!front.empty()) {
+    const int cell = front.front();
+    front.pop_front();
+    for_cells_around(cells, cell, 1, [&](int neighbour, const Vec<Dim>&) {
+      int& next = owner[static_cast<std::size_t>(neighbour)];
+      if (next >= 0) return;
+      next = owner[static_cast<std::size_t>(cell)];
+      front.push_back(neighbour);
+    });
+  }
+  std::replace(owner.begin(), owner.end(), -1, 0);
+  return owner;
+}
+
+template <int Dim>
+void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner, int cell,
+                         std::vector<HaloTarget<Dim>>& targets) {
+  const auto first = static_cast<std::ptrdiff_t>(targets.size());
+  const HaloTarget<Dim> self{owner[static_cast<std::size_t>(cell)], {}};
+  for_cells_around(cells, cell, 1, [&](int neighbour, const Vec<Dim>& shift) {
+    const HaloTarget<Dim> target{owner[static_cast<std::size_t>(neighbour)], shift};
+    if (target == self || std::find(targets.begin() + first, targets.end(), target) != targets.end()) return;
+    targets.push_back(target);
+  });
+}
 
 template <int Dim>
 Domain<Dim>::Domain(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
@@ -48,55 +94,14 @@ Domain<Dim>::Domain(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, D
 
 template <int Dim>
 void Domain<Dim>::partition(const Particles<Dim>& particles) {
-  const auto n_cells = static_cast<std::size_t>(cells_.count());
-  std::vector<int> work(n_cells, 0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    const int cell = cells_.cell(cells_.wrapped(particles.position[i]));
-    if (cell >= 0) work[static_cast<std::size_t>(cell)] += work_of(particles.type[i]);
-  }
+  std::vector<int> work(static_cast<std::size_t>(cells_.count()), 0);
+  add_work<Dim>(cells_, particles, work);
   MPI_Allreduce(MPI_IN_PLACE, work.data(), cells_.count(), MPI_INT, MPI_SUM, comm_);
+  owner_ = distribute_cells<Dim>(comm_, cells_, work, ranks_of(comm_), partitioner_);
 
-  // The graph of the occupied cells.
-  std::vector<int> vertex_of(n_cells, -1);
-  CellGraph graph;
-  std::vector<int> cell_of;
-  for (std::size_t cell = 0; cell < n_cells; ++cell) {
-    if (work[cell] == 0) continue;
-    vertex_of[cell] = static_cast<int>(cell_of.size());
-    cell_of.push_back(static_cast<int>(cell));
-    graph.vertex_weight.push_back(work[cell]);
-  }
-  for (const int cell : cell_of) {
-    for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>&) {
-      const auto n = static_cast<std::size_t>(neighbour);
-      if (vertex_of[n] < 0 || neighbour == cell) return;
-      graph.neighbour.push_back(vertex_of[n]);
-      graph.edge_weight.push_back(work[static_cast<std::size_t>(cell)] + work[n]);
-    });
-    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
-  }
-  const std::vector<int> part = partition_graph(comm_, graph, partitioner_);
-
-  // Empty cells follow the nearest occupied one: a breadth-first walk from all occupied cells at once.
-  owner_.assign(n_cells, -1);
-  std::deque<int> front;
   std::vector<double> rank_work(static_cast<std::size_t>(ranks_of(comm_)), 0.0);
-  for (std::size_t v = 0; v < cell_of.size(); ++v) {
-    owner_[static_cast<std::size_t>(cell_of[v])] = part[v];
-    rank_work[static_cast<std::size_t>(part[v])] += graph.vertex_weight[v];
-    front.push_back(cell_of[v]);
-  }
-  while (!front.empty()) {
-    const int cell = front.front();
-    front.pop_front();
-    for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>&) {
-      int& owner = owner_[static_cast<std::size_t>(neighbour)];
-      if (owner >= 0) return;
-      owner = owner_[static_cast<std::size_t>(cell)];
-      front.push_back(neighbour);
-    });
-  }
-  std::replace(owner_.begin(), owner_.end(), -1, 0);
+  for (std::size_t cell = 0; cell < work.size(); ++cell)
+    rank_work[static_cast<std::size_t>(owner_[cell])] += work[cell];
   const double total = std::accumulate(rank_work.begin(), rank_work.end(), 0.0);
   const double largest = *std::max_element(rank_work.begin(), rank_work.end());
   achieved_imbalance_ = total > 0.0 ? largest * static_cast<double>(rank_work.size()) / total : 1.0;
@@ -110,16 +115,7 @@ void Domain<Dim>::find_halo_targets() {
   targets_.clear();
   target_start_.assign(1, 0);
   for (int cell = 0; cell < cells_.count(); ++cell) {
-    const auto first = static_cast<std::ptrdiff_t>(targets_.size());
-    if (owner_[static_cast<std::size_t>(cell)] == self) {
-      for_neighbour_cells(cells_, cell, [&](int neighbour, const Vec<Dim>& shift) {
-        const int rank = owner_[static_cast<std::size_t>(neighbour)];
-        if (rank == self && shift == Vec<Dim>{}) return;
-        const auto known = std::find_if(targets_.begin() + first, targets_.end(),
-                                        [&](const Target& t) { return t.rank == rank && t.shift == shift; });
-        if (known == targets_.end()) targets_.push_back({rank, shift});
-      });
-    }
+    if (owner_[static_cast<std::size_t>(cell)] == self) append_halo_targets<Dim>(cells_, owner_, cell, targets_);
     target_start_.push_back(static_cast<int>(targets_.size()));
   }
 }
@@ -195,10 +191,6 @@ void Domain<Dim>::sort_along_cells(Particles<Dim>& particles) const {
 
 template <int Dim>
 void Domain<Dim>::build_halo(Particles<Dim>& particles) {
-  struct HaloRecord {
-    ParticleRecord<Dim> particle;
-    PetscInt row;
-  };
   particles.resize(particles.owned);
   PetscInt first_row = 0;
   const PetscInt owned = particles.owned;
@@ -247,6 +239,12 @@ void Domain<Dim>::refresh_positions(Particles<Dim>& particles) const {
   halo_.exchange().forward(packed.data(), particles.position.data() + particles.owned);
 }
 
+template void add_work(const CellGrid<2>&, const Particles<2>&, std::span<int>);
+template void add_work(const CellGrid<3>&, const Particles<3>&, std::span<int>);
+template std::vector<int> distribute_cells(MPI_Comm, const CellGrid<2>&, std::span<const int>, int, Partitioner);
+template std::vector<int> distribute_cells(MPI_Comm, const CellGrid<3>&, std::span<const int>, int, Partitioner);
+template void append_halo_targets(const CellGrid<2>&, std::span<const int>, int, std::vector<HaloTarget<2>>&);
+template void append_halo_targets(const CellGrid<3>&, std::span<const int>, int, std::vector<HaloTarget<3>>&);
 template class Domain<2>;
 template class Domain<3>;
 

@@ -34,6 +34,8 @@ int run_program(int argc, char** argv) {
     const Config config = parse_case(load_case_files_on_first_rank(comm, line.case_path), line.settings);
     if (line.check) {
       check_case(comm, config);
+    } else if (line.plan_ranks > 0) {
+      plan_case(comm, config, line.plan_ranks);
     } else {
       run_case(comm, config);
     }

@@ -71,8 +71,8 @@ std::vector<int> partition_with_ptscotch(MPI_Comm comm, const CellGraph& graph, 
 
 }  // namespace
 
-std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, Partitioner partitioner) {
-  const int parts = std::min(ranks_of(comm), graph.size());
+std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner) {
+  parts = std::min(parts, graph.size());
   if (parts <= 1) return std::vector<int>(static_cast<std::size_t>(graph.size()), 0);
   if (partitioner == Partitioner::ptscotch) return partition_with_ptscotch(comm, graph, parts);
   std::vector<int> part(static_cast<std::size_t>(graph.size()));

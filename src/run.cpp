@@ -9,6 +9,7 @@
 
 #include "impinge/output.hpp"
 #include "impinge/parallel.hpp"
+#include "impinge/plan.hpp"
 #include "impinge/progress.hpp"
 #include "impinge/simulation.hpp"
 
@@ -29,10 +30,8 @@ void with_dimension(const Config& config, Use&& use) {
   }
 }
 
-/// Throws InputError if the command line has PETSc options that nothing has asked for.
-template <int Dim>
-void refuse_unused_options(const Simulation<Dim>& simulation) {
-  const auto& ours = simulation.pressure_solver().default_options();
+/// Throws InputError if the command line has PETSc options that nothing has asked for; `ours`: set by the program.
+void refuse_unused_options(const std::vector<std::string>& ours) {
   std::vector<std::string> mistakes;
   for (const std::string& option : unused_petsc_options())
     if (std::ranges::find(ours, option) == ours.end())
@@ -43,7 +42,7 @@ void refuse_unused_options(const Simulation<Dim>& simulation) {
 template <int Dim>
 void check(MPI_Comm comm, const Config& config) {
   const Simulation<Dim> simulation(comm, config);
-  refuse_unused_options(simulation);
+  refuse_unused_options(simulation.pressure_solver().default_options());
   const StepReport& report = simulation.report();
   std::array<std::int64_t, 4> counts{};
   const Particles<Dim>& particles = simulation.particles();
@@ -69,6 +68,55 @@ void check(MPI_Comm comm, const Config& config) {
   fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
              std::ceil(config.time.end / std::min(config.time.dt, cfl_dt)), config.time.end);
   fmt::print("output      {}\n", config.output.directory);
+}
+
+/// Mean and largest over the ranks of a number that use(rank plan) gives.
+template <class Use>
+std::pair<double, double> mean_and_largest(const Plan& plan, Use&& use) {
+  double sum = 0.0;
+  double largest = 0.0;
+  for (const RankPlan& rank : plan.ranks) {
+    const auto value = static_cast<double>(use(rank));
+    sum += value;
+    largest = std::max(largest, value);
+  }
+  return {sum / static_cast<double>(plan.ranks.size()), largest};
+}
+
+void print_plan(const Config& config, const Plan& plan) {
+  const auto of = [&](auto member, double unit = 1.0) {
+    return mean_and_largest(plan, [&](const RankPlan& rank) { return static_cast<double>(rank.*member) / unit; });
+  };
+  const auto [work, most_work] = of(&RankPlan::work);
+  const auto [owned, most_owned] = of(&RankPlan::owned);
+  const auto [halo, most_halo] = of(&RankPlan::halo);
+  const double worst_fraction =
+      mean_and_largest(plan, [](const RankPlan& rank) {
+        return static_cast<double>(rank.halo) / std::max(1.0, static_cast<double>(rank.owned));
+      }).second;
+  const auto [neighbours, most_neighbours] = of(&RankPlan::neighbours);
+  const auto [field, most_field] = of(&RankPlan::field_bytes, 1e3);
+  const auto [step, most_step] = of(&RankPlan::step_bytes, 1e3);
+  const auto [iteration, most_iteration] = of(&RankPlan::iteration_bytes, 1e3);
+  const auto [memory, most_memory] = of(&RankPlan::memory, 1e6);
+  const auto [nodes, most_nodes] = of(&RankPlan::nodes);
+  const auto ranks = static_cast<double>(plan.ranks.size());
+  fmt::print("case        {}, {} dimensions, planned for {} ranks; numbers are those of a rank\n", config.name,
+             config.dimension, plan.ranks.size());
+  fmt::print("particles   mean {:.1f}, most {:.0f}, {:.0f} in all\n", owned, most_owned, owned * ranks);
+  fmt::print("imbalance   {:.3f} (largest over mean work)\n", work > 0.0 ? most_work / work : 1.0);
+  fmt::print("empty       {} ranks\n", std::ranges::count(plan.ranks, 0, &RankPlan::owned));
+  fmt::print("halo        mean {:.1f}, most {:.0f} particles; over owned: mean {:.4f}, worst {:.4f}\n", halo, most_halo,
+             halo / owned, worst_fraction);
+  fmt::print("neighbours  mean {:.2f}, most {:.0f} ranks\n", neighbours, most_neighbours);
+  fmt::print("refresh     mean {:.1f}, most {:.1f} kB received for one double per halo particle\n", field, most_field);
+  fmt::print("step        mean {:.1f}, most {:.1f} kB received, and up to {:.1f}, {:.1f} kB per solver iteration\n",
+             step, most_step, iteration, most_iteration);
+  fmt::print("memory      mean {:.1f}, most {:.1f} MB; preconditioner and libraries come on top\n", memory,
+             most_memory);
+  fmt::print("nodes       mean {:.1f}, most {:.0f} cells with particles: rows of the coarse matrix\n", nodes,
+             most_nodes);
+  fmt::print("cells       {}, {} of them with particles (the partitioned graph)\n", plan.cells, plan.occupied);
 }
 
 /// Time of the next snapshot, a multiple of the interval after `time`.
@@ -108,7 +156,7 @@ void run(MPI_Comm comm, const Config& config) {
     }
     output.record(report, seconds_since(step_start));
     if (!options_checked && (report.pressure.iterations > 0 || finished())) {
-      refuse_unused_options(simulation);
+      refuse_unused_options(simulation.pressure_solver().default_options());
       options_checked = true;
     }
     progress.update(report);
@@ -147,6 +195,14 @@ std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::s
 
 void check_case(MPI_Comm comm, const Config& config) {
   with_dimension(config, [&](auto dimension) { check<dimension()>(comm, config); });
+}
+
+void plan_case(MPI_Comm comm, const Config& config, int ranks) {
+  refuse_unused_options({});
+  with_dimension(config, [&](auto dimension) {
+    const Plan plan = plan_run<dimension()>(comm, config, ranks);
+    if (rank_of(comm) == 0) print_plan(config, plan);
+  });
 }
 
 void run_case(MPI_Comm comm, const Config& config) {

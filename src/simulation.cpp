@@ -29,6 +29,11 @@ double reach_of(const Config& config) {
   return config.kernel.laplacian_radius * config.particles.spacing;
 }
 
+// Arrays of one entry per particle.
+template <int Dim>
+constexpr std::size_t particle_bytes = sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t) +
+                                       sizeof(PressureRole) + sizeof(double) + sizeof(Vec<Dim>) + sizeof(PetscInt);
+
 bool moves(ParticleType type) { return type == ParticleType::fluid; }
 
 }  // namespace
@@ -288,10 +293,24 @@ void Simulation<Dim>::take_stock() {
 
 template <int Dim>
 std::size_t Simulation<Dim>::bytes() const {
-  const auto n = static_cast<std::size_t>(particles_.size());
-  const std::size_t per_particle = sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t) +
-                                   sizeof(PressureRole) + sizeof(double) + sizeof(Vec<Dim>) + sizeof(PetscInt);
-  return n * per_particle + search_.bytes() + pressure_solver_.bytes() + (two_level_ ? two_level_->bytes() : 0);
+  return static_cast<std::size_t>(particles_.size()) * particle_bytes<Dim> + search_.bytes() +
+         pressure_solver_.bytes() + (two_level_ ? two_level_->bytes() : 0);
+}
+
+template <int Dim>
+UnitCosts Simulation<Dim>::unit_costs(const Config& config) {
+  const int near = lattice_sums<Dim>(config.kernel.type, config.kernel.radius).neighbours;
+  const int far = lattice_sums<Dim>(config.kernel.type, config.kernel.laplacian_radius).neighbours;
+  constexpr double pair = sizeof(int) + sizeof(double);
+  constexpr double entry = sizeof(PetscInt) + sizeof(double);
+  // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice.
+  double traffic = sizeof(typename Domain<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
+  if (config.fluid.viscosity > 0.0) traffic += sizeof(Vec<Dim>);
+  if (config.collision.distance > 0.0) traffic += 2.0 * sizeof(Vec<Dim>);
+  return {.particle_memory = particle_bytes<Dim> + 2.0 * sizeof(int) + sizeof(Vec<Dim>),  // with the cells' order
+          .row_memory = (near + far) * pair + far * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
+          .cell_memory = 3.0 * sizeof(int),
+          .halo_traffic = traffic};
 }
 
 template <int Dim>

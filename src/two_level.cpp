@@ -70,17 +70,13 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
   const int self = rank_of(comm_);
   owned_cells_ = static_cast<std::size_t>(count[static_cast<std::size_t>(self)]);
 
-  // Particles of this rank touch the next cells, those of the halo the next but one.
   node_of_cell_.assign(owner.size(), -1);
   cell_of_node_.clear();
   std::vector<PetscSFNode> remote;
   for (std::size_t cell = 0; cell < owner.size(); ++cell) {
     if (owner[cell] != self) continue;
-    const auto centre = cells_.coordinates(static_cast<int>(cell));
-    for_cube<Dim>(5, -2, [&](int, const std::array<int, Dim>& offset) {
-      Vec<Dim> shift;
-      const int near = cells_.wrapped_cell(sum<Dim>(centre, offset), shift);
-      if (near < 0 || node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
+    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Vec<Dim>&) {
+      if (node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
       node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
       cell_of_node_.push_back(near);
       remote.push_back({owner[static_cast<std::size_t>(near)], root[static_cast<std::size_t>(near)]});

@@ -18,7 +18,7 @@ LEVELS = [
     ["operators", "pressure", "snapshot"],
     ["two_level"],
     ["simulation"],
-    ["output", "progress"],
+    ["output", "plan", "progress"],
     ["command_line", "run"],
     ["main"],
     ["post/jet_comparison"],

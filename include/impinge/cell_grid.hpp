@@ -47,4 +47,24 @@ class CellGrid {
   std::array<bool, Dim> periodic_;
 };
 
+/// Calls use(cell, shift) for the cells up to `reach` cells away from `cell` along every axis, itself included, in a
+/// fixed order; shift [m]: see wrapped_cell.
+template <int Dim, class Use>
+void for_cells_around(const CellGrid<Dim>& cells, int cell, int reach, Use&& use) {
+  const auto centre = cells.coordinates(cell);
+  const int span = 2 * reach + 1;
+  const int count = Dim == 2 ? span * span : span * span * span;
+  for (int code = 0; code < count; ++code) {
+    auto at = centre;
+    int rest = code;
+    for (int& coordinate : at) {
+      coordinate += rest % span - reach;
+      rest /= span;
+    }
+    Vec<Dim> shift;
+    const int near = cells.wrapped_cell(at, shift);
+    if (near >= 0) use(near, shift);
+  }
+}
+
 }  // namespace impinge

@@ -11,6 +11,30 @@
 
 namespace impinge {
 
+/// Adds the work of every owned particle to the entry of its cell in `work`. Particles outside the cells count for
+/// nothing. Not collective.
+template <int Dim>
+void add_work(const CellGrid<Dim>& cells, const Particles<Dim>& particles, std::span<int> work);
+
+/// Part of every cell, 0 to `parts` - 1, that balances `work` (per cell, the same on every rank): k-way on the graph of
+/// occupied cells (METIS on rank 0, or PTScotch on all); empty cells follow the nearest occupied one. Collective.
+template <int Dim>
+std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std::span<const int> work, int parts,
+                                  Partitioner partitioner);
+
+/// A rank that has a cell's particles in its halo, moved by `shift` [m] (zero unless periodic).
+template <int Dim>
+struct HaloTarget {
+  int rank;
+  Vec<Dim> shift;
+  friend bool operator==(const HaloTarget&, const HaloTarget&) = default;
+};
+
+/// Appends all that have the particles of `cell` in their halo, each once. `owner`: rank of each cell. Not collective.
+template <int Dim>
+void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner, int cell,
+                         std::vector<HaloTarget<Dim>>& targets);
+
 /// Decomposition of the particles over the ranks by background cells whose edge is at least the largest effective
 /// radius. Arrays of global length exist on the cell grid only.
 template <int Dim>
@@ -18,6 +42,12 @@ class Domain {
  public:
   /// How many parts a background cell is cut into along each axis for sorting and searching.
   static constexpr int cell_parts = 2;
+
+  /// What build_halo sends of a particle.
+  struct HaloRecord {
+    ParticleRecord<Dim> particle;
+    PetscInt row;
+  };
 
   /// `reach`: largest effective radius [m]. Every rank starts with no cell; call partition before migrate. Collective.
   Domain(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
@@ -35,9 +65,8 @@ class Domain {
   /// The cells in whose order owned particles are sorted.
   const CellGrid<Dim>& sorting_cells() const { return fine_; }
 
-  /// Assigns every cell to a rank so that the work of the particles, wherever they are now, is balanced: k-way on the
-  /// graph of occupied cells (METIS on rank 0, or PTScotch on all); empty cells follow the nearest occupied one.
-  /// Reads owned positions and types. Collective.
+  /// Assigns every cell to a rank so that the work of the particles, wherever they are now, is balanced (see
+  /// distribute_cells). Reads owned positions and types. Collective.
   void partition(const Particles<Dim>& particles);
 
   /// Largest over mean work of the ranks. Collective.
@@ -67,11 +96,6 @@ class Domain {
   std::span<const PetscInt> rows() const { return rows_; }
 
  private:
-  struct Target {
-    int rank;
-    Vec<Dim> shift;
-  };
-
   void find_halo_targets();
   void sort_along_cells(Particles<Dim>& particles) const;
 
@@ -79,9 +103,9 @@ class Domain {
   CellGrid<Dim> cells_;
   CellGrid<Dim> fine_;
   Partitioner partitioner_;
-  std::vector<int> owner_;         // rank of each cell
-  std::vector<int> target_start_;  // per cell: range in targets_
-  std::vector<Target> targets_;    // who sees the particles of a cell of this rank
+  std::vector<int> owner_;                // rank of each cell
+  std::vector<int> target_start_;         // per cell: range in targets_
+  std::vector<HaloTarget<Dim>> targets_;  // who sees the particles of a cell of this rank
   double achieved_imbalance_ = 1.0;
   int partitions_ = 0;
   Halo halo_;

@@ -31,6 +31,7 @@ struct LatticeSums {
   double number_density;     ///< n0 = sum W [-]
   double lambda;             ///< sum W r^2 / sum W [dp^2] (paper eq. 7)
   double surface_asymmetry;  ///< |F|0 = Dim/n0 |sum (r_i - r_j)/r_ij W| of a particle on a flat surface [-]
+  int neighbours;            ///< lattice points within the radius
 };
 
 /// The lattice sums for an effective radius in dp.

@@ -19,8 +19,9 @@ struct CellGraph {
   int size() const { return static_cast<int>(vertex_weight.size()); }
 };
 
-/// Part of every vertex, one part per rank of `comm`, with balanced vertex weights and a small cut; ranks beyond the
-/// number of vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc). Collective.
-std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, Partitioner partitioner);
+/// Part of every vertex, 0 to `parts` - 1, with balanced vertex weights and a small cut; parts beyond the number of
+/// vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc): its parts differ
+/// from call to call, those of METIS do not. Collective.
+std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner);
 
 }  // namespace impinge

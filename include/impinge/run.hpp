@@ -16,6 +16,10 @@ std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::s
 /// Sets the case up without running it and prints particles, memory, balance and the limits of dt. Collective.
 void check_case(MPI_Comm comm, const Config& config);
 
+/// Decomposes the case's initial state for `ranks` ranks, whatever the size of `comm`, and prints what each would own
+/// and exchange. Collective; throws InputError for PETSc options that nothing uses.
+void plan_case(MPI_Comm comm, const Config& config, int ranks);
+
 /// Runs the case to its end, with progress on the terminal and files in the output directory. Collective. Throws
 /// SolveError after the last state has been written, InputError also for PETSc options that nothing uses, OutputError.
 void run_case(MPI_Comm comm, const Config& config);

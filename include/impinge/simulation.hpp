@@ -48,6 +48,14 @@ struct StepReport {
   PressureReport pressure;
 };
 
+/// What a run takes for each of its items: sizes of the arrays and messages, rows as on the full lattice.
+struct UnitCosts {
+  double particle_memory;  ///< of an owned or halo particle [bytes]
+  double row_memory;       ///< of a row of pairs, matrix and interpolation on top of its particle [bytes]
+  double cell_memory;      ///< of a background cell, on every rank [bytes]
+  double halo_traffic;     ///< sent per halo particle and step, but for the iterations of the solver [bytes]
+};
+
 /// The MPS method on the particles of all ranks. Every public function that is not const is collective.
 template <int Dim>
 class Simulation {
@@ -70,6 +78,12 @@ class Simulation {
 
   /// Memory of particles, pair lists and matrix on this rank [bytes].
   std::size_t bytes() const;
+
+  /// Touches nothing; not collective.
+  static UnitCosts unit_costs(const Config& config);
+
+  /// Who owns which particle.
+  const Domain<Dim>& domain() const { return domain_; }
 
   /// Largest over mean work of the ranks.
   double imbalance() const { return domain_.imbalance(particles_); }

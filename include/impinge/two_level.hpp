@@ -18,6 +18,10 @@ namespace impinge {
 template <int Dim>
 class TwoLevelPreconditioner {
  public:
+  /// Cells that a rank exchanges coarse values with: particles of its own touch the next cells, those of the halo the
+  /// next but one.
+  static constexpr int node_reach = 2;
+
   /// `cells`: background cells whose edge is at least the Laplacian's radius. Collective.
   TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells);
 
@@ -36,6 +40,9 @@ class TwoLevelPreconditioner {
 
   /// Memory of interpolation and node lists [bytes].
   std::size_t bytes() const;
+
+  /// The part of it that every unknown takes [bytes].
+  static constexpr std::size_t bytes_per_row = sizeof(double) + (1 << Dim) * (sizeof(int) + sizeof(double));
 
  private:
   static constexpr int corners = 1 << Dim;

@@ -59,6 +59,7 @@ class CommandLine(System):
             (["--version"], "impinge "),
             (["--describe"], "particles.spacing"),
             ([QUICK, "--check"], "bytes per particle"),
+            ([QUICK, "--plan", "16"], "planned for 16 ranks"),
         ):
             done = impinge(*words, cwd=self.directory)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -84,6 +85,22 @@ class CommandLine(System):
         self.assertEqual(done.returncode, 2)
         for part in ("case.toml:2:", "case.toml:3:", "--set: time.dt"):
             self.assertIn(part, done.stderr)
+
+    def test_plan_refuses_what_is_no_number_of_ranks_and_petsc_options(self):
+        for words, part in ((["0"], "--plan"), (["2.5"], "--plan"), (["4", "--check"], "--plan"),
+                            (["4", "-ppe_pc_type", "jacobi"], "-ppe_pc_type")):
+            done = impinge(QUICK, "--plan", *words)
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn(part, done.stderr)
+
+    def test_plan_is_what_a_run_writes(self):
+        plan = impinge(QUICK, "--plan", "3").stdout
+        self.assertEqual(impinge(QUICK, "--plan", "3", ranks=2).stdout, plan)
+        done = impinge(QUICK, "--set", "time.end=8e-4", "--set", "output.directory=out", cwd=self.directory, ranks=3)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(self.directory / "out/jet60-quick_00000000.vtkhdf") as file:
+            counts = file["VTKHDF/NumberOfPoints"][:]
+        self.assertIn(f"most {max(counts)}, {sum(counts)} in all", plan)
 
     def test_missing_file_and_unused_petsc_option(self):
         done = impinge("nowhere.toml", ranks=2)

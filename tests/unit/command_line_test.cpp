@@ -31,6 +31,16 @@ TEST(CommandLine, TakesACaseAndSettings) {
   EXPECT_FALSE(parse_command_line({"case.toml"}).check);
 }
 
+TEST(CommandLine, TakesANumberOfRanksToPlanFor) {
+  EXPECT_EQ(parse_command_line({"case.toml"}).plan_ranks, 0);
+  EXPECT_EQ(parse_command_line({"case.toml", "--plan", "10000"}).plan_ranks, 10000);
+  EXPECT_EQ(parse_command_line({"--plan=1", "case.toml"}).plan_ranks, 1);
+  for (const char* ranks : {"0", "-5", "1.5", "1e3", "many", "1000001", ""})
+    EXPECT_NE(mistake_in({"case.toml", "--plan", ranks}).find("--plan"), std::string::npos) << ranks;
+  EXPECT_NE(mistake_in({"case.toml", "--plan"}).find("--plan"), std::string::npos);
+  EXPECT_NE(mistake_in({"case.toml", "--plan", "4", "--check"}).find("--check"), std::string::npos);
+}
+
 TEST(CommandLine, SplitsOffPetscOptionsInOrder) {
   const CommandLine line = parse_command_line({"-ppe_ksp_monitor", "case.toml", "-ppe_ksp_rtol", "1e-8", "-log_view",
                                                "--set", "time.end=1", "-ppe_shift", "-1.5", "-ppe_pc_type", "gamg"});
@@ -44,8 +54,9 @@ TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
   for (const Words& arguments :
        {Words{"--help"}, Words{"-h"}, Words{"-log_view", "-h"}, Words{"case.toml", "--help"}}) {
     const std::string text = parse_command_line(arguments).text;
-    for (const char* part : {"--set", "--check", "--describe", "--version", "CASE.toml", "-ppe_ksp_type cg",
-                             "-ppe_pc_type hypre|gamg|bjacobi", "-ppe_ksp_monitor", "-log_view", "2 wrong input"}) {
+    for (const char* part :
+         {"--set", "--check", "--plan RANKS", "--describe", "--version", "CASE.toml", "-ppe_ksp_type cg",
+          "-ppe_pc_type hypre|gamg|bjacobi", "-ppe_ksp_monitor", "-log_view", "2 wrong input"}) {
       EXPECT_NE(text.find(part), text.npos) << part;
     }
   }

@@ -46,11 +46,13 @@ TEST(LatticeSums, OfTheCubicLattice) {
   EXPECT_NEAR(nearest.number_density, 6.0 * 0.2, 1e-14);
   EXPECT_NEAR(nearest.lambda, 1.0, 1e-14);
   EXPECT_NEAR(nearest.surface_asymmetry, 3.0 / 6.0, 1e-14);
+  EXPECT_EQ(nearest.neighbours, 6);
 
   const double diagonal = 1.5 / std::sqrt(2.0) - 1.0;
   const LatticeSums next = lattice_sums<3>(KernelType::singular, 1.5);
   EXPECT_NEAR(next.number_density, 6.0 * 0.5 + 12.0 * diagonal, 1e-14);
   EXPECT_NEAR(next.lambda, (6.0 * 0.5 + 24.0 * diagonal) / (6.0 * 0.5 + 12.0 * diagonal), 1e-14);
+  EXPECT_EQ(next.neighbours, 6 + 12);
 }
 
 template <class Kernel>

@@ -1,0 +1,137 @@
+// A plan for N ranks, made on one process, is what a run on N ranks has.
+
+#include "impinge/plan.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+#include "gather.hpp"
+#include "impinge/simulation.hpp"
+#include "shipped_case.hpp"
+
+namespace impinge {
+namespace {
+
+const MPI_Comm comm = MPI_COMM_WORLD;
+
+/// What this rank has at the start of a run.
+template <int Dim>
+void expect_plan_of_this_rank(const Config& config, MPI_Comm planners) {
+  const Plan plan = plan_run<Dim>(planners, config, ranks_of(comm));
+  ASSERT_EQ(plan.ranks.size(), static_cast<std::size_t>(ranks_of(comm)));
+  const RankPlan& here = plan.ranks[static_cast<std::size_t>(rank_of(comm))];
+
+  const Simulation<Dim> simulation(comm, config);
+  const Particles<Dim>& particles = simulation.particles();
+  const auto has_row = [&](int i) {
+    const ParticleType type = particles.type[static_cast<std::size_t>(i)];
+    return type == ParticleType::fluid || type == ParticleType::wall;
+  };
+  const std::vector<int> owned = gather(comm, std::vector<int>{particles.owned});
+  std::vector<PetscInt> row_end(owned.size());
+  std::partial_sum(owned.begin(), owned.end(), row_end.begin());
+  std::int64_t rows = 0;
+  std::int64_t halo_rows = 0;
+  std::set<std::ptrdiff_t> senders;
+  for (int i = 0; i < particles.size(); ++i) {
+    (i < particles.owned ? rows : halo_rows) += has_row(i);
+    if (i < particles.owned) continue;
+    const PetscInt row = simulation.domain().rows()[static_cast<std::size_t>(i)];
+    senders.insert(std::upper_bound(row_end.begin(), row_end.end(), row) - row_end.begin());
+  }
+  senders.erase(rank_of(comm));
+  EXPECT_EQ(here.owned, particles.owned);
+  EXPECT_EQ(here.rows, rows);
+  EXPECT_EQ(here.halo, particles.size() - particles.owned);
+  EXPECT_EQ(here.halo_rows, halo_rows);
+  EXPECT_EQ(here.neighbours, static_cast<std::int64_t>(senders.size()));
+  EXPECT_EQ(plan.cells, simulation.domain().cells().count());
+
+  std::int64_t most = 0;
+  std::int64_t sum = 0;
+  for (const RankPlan& rank : plan.ranks) {
+    most = std::max(most, rank.work);
+    sum += rank.work;
+  }
+  EXPECT_DOUBLE_EQ(static_cast<double>(most * ranks_of(comm)) / static_cast<double>(sum), simulation.imbalance());
+}
+
+TEST(Plan, IsWhatARunHas) {
+  for (const char* start : {"impact", "steady"})
+    expect_plan_of_this_rank<2>(shipped_case("jet60-quick.toml", {fmt::format("jet.start={}", start)}), MPI_COMM_SELF);
+  expect_plan_of_this_rank<2>(shipped_case("hydrostatic.toml"), MPI_COMM_SELF);
+  expect_plan_of_this_rank<2>(shipped_case("shear-wave.toml"), MPI_COMM_SELF);
+  expect_plan_of_this_rank<3>(shipped_case("hydrostatic-3d.toml"), MPI_COMM_SELF);
+}
+
+TEST(Plan, IsTheSameOnEveryNumberOfProcesses) { expect_plan_of_this_rank<2>(shipped_case("jet60-quick.toml"), comm); }
+
+TEST(Plan, HoldsEveryParticleOnceWhereRanksAreMany) {
+  const Config config = shipped_case("jet60-quick.toml");
+  const Simulation<2> simulation(MPI_COMM_SELF, config);
+  for (const char* partitioner : {"metis", "ptscotch"}) {
+    for (const int ranks : {1, 16, 1000}) {
+      const Plan plan = plan_run<2>(
+          comm, shipped_case("jet60-quick.toml", {fmt::format("parallel.partitioner={}", partitioner)}), ranks);
+      std::int64_t owned = 0;
+      std::int64_t occupied = 0;
+      for (const RankPlan& rank : plan.ranks) {
+        owned += rank.owned;
+        occupied += rank.nodes;
+        EXPECT_LT(rank.neighbours, ranks);
+        EXPECT_EQ(rank.halo > 0, rank.neighbours > 0);
+      }
+      EXPECT_EQ(owned, simulation.report().particles);
+      EXPECT_EQ(occupied, plan.occupied);
+      EXPECT_EQ(plan.ranks.size(), static_cast<std::size_t>(ranks));
+    }
+  }
+}
+
+// PETSc counts what it sends. Not all copies of the halo are in reach of a row, so a plan is an upper bound.
+TEST(Plan, BoundsTheTrafficOfAStep) {
+  for (const char* viscosity : {"0", "1e-4"}) {
+    for (const char* distance : {"0", "0.8"}) {
+      const Config config =
+          shipped_case("jet60-quick.toml", {"jet.start=steady", fmt::format("fluid.viscosity={}", viscosity),
+                                            fmt::format("collision.distance={}", distance)});
+      const Plan plan = plan_run<2>(MPI_COMM_SELF, config, ranks_of(comm));
+      Simulation<2> simulation(comm, config);
+      simulation.step();
+      double planned = 0.0;
+      const double before = petsc_isend_len;
+      for (int step = 0; step < 4; ++step) {
+        simulation.step();
+        for (const RankPlan& rank : plan.ranks)  // three products and a preconditioner more than iterations
+          planned += rank.step_bytes + (simulation.report().pressure.iterations + 3) * rank.iteration_bytes;
+      }
+      const double sent = sum_over_ranks(comm, petsc_isend_len - before);
+      if (rank_of(comm) == 0) fmt::print("  sent {:.0f}, planned {:.0f} bytes\n", sent, planned);
+      EXPECT_LE(sent, 1.05 * planned);
+      EXPECT_GE(sent, 0.7 * planned);
+    }
+  }
+}
+
+template <int Dim>
+void expect_memory(const Config& config) {
+  Simulation<Dim> simulation(comm, config);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  const Plan plan = plan_run<Dim>(comm, config, ranks_of(comm));
+  const double ratio =
+      plan.ranks[static_cast<std::size_t>(rank_of(comm))].memory / static_cast<double>(simulation.bytes());
+  if (rank_of(comm) == 0) fmt::print("  planned over held memory {:.3f}\n", ratio);
+  EXPECT_GT(ratio, 0.6);
+  EXPECT_LT(ratio, 1.4);
+}
+
+TEST(Plan, EstimatesTheMemoryOfARun) {
+  expect_memory<2>(shipped_case("jet60-quick.toml", {"jet.start=steady"}));
+  expect_memory<3>(shipped_case("hydrostatic-3d.toml"));
+}
+
+}  // namespace
+}  // namespace impinge
