@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Weak and strong series on 1 to 16 ranks, more than there are cores: counts per step, not times.
-# Usage: jobs/scaling.sh [SERIES...]   SERIES: strong weak strong-3d weak-3d, default all; ten minutes on 2 cores
+# Usage: jobs/scaling.sh [SERIES...]   SERIES: strong weak strong-3d weak-3d, default all; five minutes on 2 cores
 #   strong, weak: a steady jet of 60 degrees, H/dp = 80; weak: H/dp = 40 to 160 with the root of the number of ranks
 #   strong-3d, weak-3d: a tank of water, 32 particles an edge; weak: 16 to 40 with the cube root
 # Output: output/scaling/<series>-<ranks>/, the tables in output/scaling/table.txt. A run is started twice, for 1 step
