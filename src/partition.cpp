@@ -71,6 +71,10 @@ std::vector<int> partition_with_ptscotch(MPI_Comm comm, const CellGraph& graph, 
 
 }  // namespace
 
+bool needs_edges(MPI_Comm comm, Partitioner partitioner) {
+  return partitioner == Partitioner::ptscotch || rank_of(comm) == 0;
+}
+
 std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner) {
   parts = std::min(parts, graph.size());
   if (parts <= 1) return std::vector<int>(static_cast<std::size_t>(graph.size()), 0);

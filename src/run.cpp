@@ -1,11 +1,13 @@
 #include "impinge/run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "impinge/output.hpp"
 #include "impinge/parallel.hpp"
@@ -30,11 +32,17 @@ void with_dimension(const Config& config, Use&& use) {
   }
 }
 
-/// Throws InputError if the command line has PETSc options that nothing has asked for; `ours`: set by the program.
-void refuse_unused_options(const std::vector<std::string>& ours) {
+/// Throws InputError on all ranks if the command line has PETSc options that no rank has asked for (a solver may live
+/// on some ranks only); `ours`: set by the program. Collective.
+void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) {
+  const std::vector<std::string> unused_here = unused_petsc_options();
+  const auto used_here = [&](const std::string& option) {
+    return std::ranges::find(unused_here, option) == unused_here.end();
+  };
   std::vector<std::string> mistakes;
-  for (const std::string& option : unused_petsc_options())
-    if (std::ranges::find(ours, option) == ours.end())
+  std::istringstream unused(broadcast(comm, fmt::format("{}", fmt::join(unused_here, "\n")), 0));
+  for (std::string option; std::getline(unused, option);)
+    if (!any_rank(comm, used_here(option)) && std::ranges::find(ours, option) == ours.end())
       mistakes.push_back(fmt::format("command line: {}: no part of PETSc or Impinge uses this option", option));
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
@@ -42,7 +50,7 @@ void refuse_unused_options(const std::vector<std::string>& ours) {
 template <int Dim>
 void check(MPI_Comm comm, const Config& config) {
   const Simulation<Dim> simulation(comm, config);
-  refuse_unused_options(simulation.pressure_solver().default_options());
+  refuse_unused_options(comm, simulation.pressure_solver().default_options());
   const StepReport& report = simulation.report();
   std::array<std::int64_t, 4> counts{};
   const Particles<Dim>& particles = simulation.particles();
@@ -156,7 +164,7 @@ void run(MPI_Comm comm, const Config& config) {
     }
     output.record(report, seconds_since(step_start));
     if (!options_checked && (report.pressure.iterations > 0 || finished())) {
-      refuse_unused_options(simulation.pressure_solver().default_options());
+      refuse_unused_options(comm, simulation.pressure_solver().default_options());
       options_checked = true;
     }
     progress.update(report);
@@ -198,7 +206,7 @@ void check_case(MPI_Comm comm, const Config& config) {
 }
 
 void plan_case(MPI_Comm comm, const Config& config, int ranks) {
-  refuse_unused_options({});
+  refuse_unused_options(comm, {});
   with_dimension(config, [&](auto dimension) {
     const Plan plan = plan_run<dimension()>(comm, config, ranks);
     if (rank_of(comm) == 0) print_plan(config, plan);

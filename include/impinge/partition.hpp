@@ -9,7 +9,7 @@
 
 namespace impinge {
 
-/// A weighted undirected graph in compressed rows, the same on every rank.
+/// A weighted undirected graph in compressed rows, the same on every rank that knows its edges.
 struct CellGraph {
   std::vector<int> start{0};
   std::vector<int> neighbour;
@@ -18,6 +18,9 @@ struct CellGraph {
 
   int size() const { return static_cast<int>(vertex_weight.size()); }
 };
+
+/// True on the ranks that must know the edges of the graph; the vertices' weights must be known to all. Not collective.
+bool needs_edges(MPI_Comm comm, Partitioner partitioner);
 
 /// Part of every vertex, 0 to `parts` - 1, with balanced vertex weights and a small cut; parts beyond the number of
 /// vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc): its parts differ

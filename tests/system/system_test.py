@@ -228,6 +228,10 @@ class Run(System):
             done = self.run_case("--set", "time.end=0.004", *words)
             self.assertEqual("KSP Residual norm" in done.stdout, "-ppe_ksp_monitor" in words)
 
+    def test_a_petsc_option_may_concern_some_ranks_only(self):
+        self.run_case("--set", "time.end=0.004", "-ppe_coarse_pc_type", "telescope",
+                      "-ppe_coarse_pc_telescope_reduction_factor", "2", "-ppe_coarse_telescope_pc_type", "hypre")
+
     def test_partitioner_and_log_stages(self):
         done = self.run_case("--set", "time.end=0.004", "--set", "parallel.partitioner=ptscotch", "-log_view")
         for stage in ("Predict", "Redistribute", "Neighbours", "Density", "PPE assembly", "PPE solve", "Correct"):
