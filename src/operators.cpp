@@ -49,7 +49,8 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
 
 template <int Dim>
 Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
-                           std::span<const ParticleType> type, double n0, int i) {
+                           std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double n0,
+                           int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vec<Dim> centre = position[self];
   const double own = pressure[self];
@@ -57,7 +58,8 @@ Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> posit
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (type[j] == ParticleType::ghost) return;
     const Vec<Dim> offset = position[j] - centre;
-    sum += (pressure[j] + own) * weight / dot(offset, offset) * offset;
+    const Vec<Dim> direction = type[j] == ParticleType::wall ? dot(offset, wall_normal[j]) * wall_normal[j] : offset;
+    sum += (pressure[j] + own) * weight / dot(offset, offset) * direction;
   });
   return Dim / n0 * sum;
 }
@@ -95,7 +97,7 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
   template double asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                             \
   template double divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>, double, int); \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \
-                                           std::span<const ParticleType>, double, int);                                \
+                                           std::span<const ParticleType>, std::span<const Vec<Dim>>, double, int);     \
   template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \
   template Vec<Dim> collision<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,              \
                                    std::span<const ParticleType>, double, double, double, int);

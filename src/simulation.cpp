@@ -152,6 +152,9 @@ void Simulation<Dim>::redistribute() {
   report_.lost += lost;
   if (lost > 0) fail("redistribute", fmt::format("{} particle(s) left the domain other than by an outlet", lost));
   domain_.build_halo(particles_);
+  wall_normal_.assign(static_cast<std::size_t>(particles_.size()), {});
+  for (std::size_t i = 0; i < wall_normal_.size(); ++i)
+    if (particles_.type[i] == ParticleType::wall) wall_normal_[i] = geometry_->wall_normal(particles_.position[i]);
 }
 
 template <int Dim>
@@ -236,7 +239,7 @@ void Simulation<Dim>::correct() {
     if (moves(particles_.type[self]))
       velocity_change_[self] =
           -factor * pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure, particles_.type,
-                                           near_sums_.number_density, i);
+                                           wall_normal_, near_sums_.number_density, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];

@@ -23,10 +23,11 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
                   double n0, int i);
 
 /// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
-/// carry no pressure and are left out.
+/// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
+/// pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall particles.
 template <int Dim>
 Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
-                           std::span<const ParticleType> type, double n0, int i);
+                           std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double n0, int i);
 
 /// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
 /// `factor` = 2 Dim/(n0 lambda) [1/m^2].

@@ -105,6 +105,7 @@ class Simulation {
   StepReport report_;
   double window_begin_ = 0.0;
   double window_end_ = 0.0;
+  std::vector<Vec<Dim>> wall_normal_;  // zero but at wall particles
   std::vector<PressureRole> role_;
   std::vector<double> source_;
   std::vector<Vec<Dim>> velocity_change_;

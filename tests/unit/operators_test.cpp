@@ -66,7 +66,9 @@ struct Cloud {
     return sum;
   }
   Vec<Dim> gradient(int i) const {
-    return pressure_gradient<Dim>(near, particles.position, particles.pressure, particles.type, sums.number_density, i);
+    const std::vector<Vec<Dim>> no_wall(particles.type.size());
+    return pressure_gradient<Dim>(near, particles.position, particles.pressure, particles.type, no_wall,
+                                  sums.number_density, i);
   }
 
   LatticeSums sums, far_sums;
@@ -191,6 +193,8 @@ struct Group {
     return list;
   }
 
+  std::vector<Vec<Dim>> no_wall() const { return std::vector<Vec<Dim>>(type.size()); }
+
   /// With dt = 0.1, distance 0.5 and restitution 0.2.
   Vec<Dim> change(int i) const { return collision<Dim>(pairs(), position, velocity, type, 0.1, 0.5, 0.2, i); }
 };
@@ -202,9 +206,25 @@ TYPED_TEST(Operators, PressureGradientIsThatOfEquation4ForAPair) {
   pair.add(0.6, 0.8, 0.0, 0.0);
   pair.add(0.0, 1.0, 0.0, 0.0, ParticleType::ghost);
   const double n0 = 4.0;
-  const Vec<Dim> gradient = pressure_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, pair.type, n0, 0);
+  const Vec<Dim> gradient =
+      pressure_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, pair.type, pair.no_wall(), n0, 0);
   const double size = Dim / n0 * (1.0 + 2.0) * NonSingularKernel::weight(1.0, near_radius);
   EXPECT_NEAR(gradient[0], 0.6 * size, 1e-14);
+  EXPECT_NEAR(gradient[1], 0.8 * size, 1e-14);
+}
+
+TYPED_TEST(Operators, PressureGradientOfAWallIsAlongItsNormal) {
+  constexpr int Dim = TypeParam::value;
+  Group<Dim> pair;
+  pair.add(0.0, 0.0, 0.0, 0.0);
+  pair.add(0.6, 0.8, 0.0, 0.0, ParticleType::wall);
+  std::vector<Vec<Dim>> normal = pair.no_wall();
+  normal[1][1] = -1.0;
+  const double n0 = 4.0;
+  const Vec<Dim> gradient =
+      pressure_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, pair.type, normal, n0, 0);
+  const double size = Dim / n0 * (1.0 + 2.0) * NonSingularKernel::weight(1.0, near_radius);
+  EXPECT_EQ(gradient[0], 0.0);
   EXPECT_NEAR(gradient[1], 0.8 * size, 1e-14);
 }
 
@@ -274,7 +294,8 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), 0.0);
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);
   EXPECT_EQ(velocity_laplacian<Dim>(none, single.velocity, 4.0, 0), Vec<Dim>{});
-  EXPECT_EQ(pressure_gradient<Dim>(none, single.position, single.pressure, single.type, 4.0, 0), Vec<Dim>{});
+  EXPECT_EQ(pressure_gradient<Dim>(none, single.position, single.pressure, single.type, single.no_wall(), 4.0, 0),
+            Vec<Dim>{});
 }
 
 }  // namespace
