@@ -213,7 +213,7 @@ void Simulation<Dim>::solve_pressure() {
     if (two_level_) {
       if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
         two_level_->set_owners(domain_.owners());
-      two_level_->update(equation, particles_.position, pressure_solver_.matrix(), report_.pressure.iterations);
+      two_level_->update(equation, particles_.position, pressure_solver_.diagonal(), report_.pressure.iterations);
       two_level_->attach(pressure_solver_.preconditioner());
     }
   }

@@ -66,7 +66,7 @@ class Cloud {
   const Particles<Dim>& particles() const { return particles_; }
   PressureRole role(std::size_t i) const { return role_[i]; }
 
-  void update(int iterations) { two_level_.update(equation(), particles_.position, solver_.matrix(), iterations); }
+  void update(int iterations) { two_level_.update(equation(), particles_.position, solver_.diagonal(), iterations); }
 
   PressureReport solve() {
     two_level_.attach(solver_.preconditioner());
