@@ -57,26 +57,26 @@ void PressureSolver::Block::reset(std::size_t rows, std::size_t most_entries) {
   start.clear();
   start.reserve(rows + 1);
   start.push_back(0);
-  column.clear();
-  column.reserve(most_entries);
-  value.clear();
-  value.reserve(most_entries);
+  used = 0;
+  if (column.size() >= most_entries) return;
+  const std::size_t size = most_entries + most_entries / 8;
+  column.resize(size);
+  value.resize(size);
 }
 
 void PressureSolver::Block::append(PetscInt to, double entry) {
-  column.push_back(to);
-  value.push_back(entry);
+  column[used] = to;
+  value[used++] = entry;
 }
 
 void PressureSolver::Block::merge(std::size_t row_begin, std::vector<std::pair<PetscInt, double>>& more) {
-  for (std::size_t k = row_begin; k < column.size(); ++k) more.emplace_back(column[k], value[k]);
+  for (std::size_t k = row_begin; k < used; ++k) more.emplace_back(column[k], value[k]);
   std::sort(more.begin(), more.end());
-  column.resize(row_begin);
-  value.resize(row_begin);
+  used = row_begin;
   for (const auto& [to, entry] : more) append(to, entry);
 }
 
-void PressureSolver::Block::end_row() { start.push_back(static_cast<PetscInt>(column.size())); }
+void PressureSolver::Block::end_row() { start.push_back(static_cast<PetscInt>(used)); }
 
 PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), tolerance_(tolerance) {
   check(PCRegister(two_level, [](PC preconditioner) { return PCSetType(preconditioner, PCSHELL); }));
@@ -135,8 +135,11 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
 
   const auto rows = static_cast<std::size_t>(owned);
   const auto pairs = static_cast<std::size_t>(equation.far.pairs());
+  const auto halo_pairs = static_cast<std::size_t>(std::count_if(equation.far.index.begin(),
+                                                                 equation.far.index.begin() + equation.far.pairs(),
+                                                                 [&](int j) { return j >= owned; }));
   diagonal_.reset(rows, rows + pairs);
-  off_diagonal_.reset(rows, ranks_of(comm_) > 1 ? pairs / 4 : 0);
+  off_diagonal_.reset(rows, ranks_of(comm_) > 1 ? halo_pairs : 0);
   diagonal_entries_.assign(rows, equation.n0);
   std::vector<std::pair<PetscInt, double>> images, others;  // of a row: periodic images, columns of other ranks
   for (int i = 0; i < owned; ++i) {
@@ -148,11 +151,11 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
       images.clear();
       others.clear();
       double sum = 0.0;
-      const std::size_t row_begin = diagonal_.column.size();
+      const std::size_t row_begin = diagonal_.used;
       std::size_t own_place = 0;  // of the diagonal entry; columns ascend
       bool placed = false;
       const auto place_own = [&] {
-        own_place = diagonal_.column.size();
+        own_place = diagonal_.used;
         diagonal_.append(i, 0.0);
         placed = true;
       };

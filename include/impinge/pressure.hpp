@@ -79,6 +79,7 @@ class PressureSolver {
   struct Block {
     std::vector<PetscInt> start, column;
     std::vector<double> value;
+    std::size_t used = 0;  // entries; the arrays may be longer
     void reset(std::size_t rows, std::size_t most_entries);
     void append(PetscInt to, double entry);
     void merge(std::size_t row_begin, std::vector<std::pair<PetscInt, double>>& more);  // into the last row, ascending
