@@ -317,7 +317,7 @@ TEST(Config, ParticlesCanBeCounted) {
   EXPECT_EQ(mistakes_in("particles.spacing = 1e-7"),
             Texts{"case.toml:1: particles.spacing = 1e-07: makes some 5.6e+13 particles; allowed: at most 2147483647"});
   EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", tank_base).size(), 1u);
-  EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", box_base).back(),
+  EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", box_base).front(),
             "case.toml:1: particles.spacing = 1e-07: makes some 1e+12 particles; allowed: at most 2147483647");
 }
 
