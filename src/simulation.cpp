@@ -114,7 +114,7 @@ void Simulation<Dim>::collide() {
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (moves(particles_.type[self]))
-      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
+      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type, wall_normal_,
                                               report_.dt, distance, config_.collision.restitution, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)

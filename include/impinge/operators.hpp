@@ -37,9 +37,10 @@ Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> veloc
 /// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
 /// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
 /// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
-/// not yield.
+/// not yield. A wall is smooth: the normal of a pair with it is the wall's.
 template <int Dim>
 Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
-                   std::span<const ParticleType> type, double dt, double distance, double restitution, int i);
+                   std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double dt,
+                   double distance, double restitution, int i);
 
 }  // namespace impinge

@@ -194,7 +194,10 @@ struct Group {
   std::vector<Vec<Dim>> no_wall() const { return std::vector<Vec<Dim>>(type.size()); }
 
   /// With dt = 0.1, distance 0.5 and restitution 0.2.
-  Vec<Dim> change(int i) const { return collision<Dim>(pairs(), position, velocity, type, 0.1, 0.5, 0.2, i); }
+  Vec<Dim> change(int i) const { return change(i, no_wall()); }
+  Vec<Dim> change(int i, const std::vector<Vec<Dim>>& normal) const {
+    return collision<Dim>(pairs(), position, velocity, type, normal, 0.1, 0.5, 0.2, i);
+  }
 };
 
 TYPED_TEST(Operators, PressureGradientIsThatOfEquation4ForAPair) {
@@ -243,9 +246,13 @@ TYPED_TEST(Operators, WallsAndInletDoNotYieldInCollisions) {
   constexpr int Dim = TypeParam::value;
   for (const ParticleType rigid : {ParticleType::wall, ParticleType::inlet}) {
     Group<Dim> pair;
-    pair.add(0.0, 0.5, 0.3, -1.0);
+    // Beside a wall particle the pair is oblique, but the wall pushes along its normal.
+    const bool is_wall = rigid == ParticleType::wall;
+    pair.add(is_wall ? 0.1 : 0.0, 0.4, 0.3, -1.0);
     pair.add(0.0, 0.0, 0.0, 0.0, rigid);
-    const Vec<Dim> change = pair.change(0);
+    auto normal = pair.no_wall();
+    if (is_wall) normal[1][1] = 1.0;
+    const Vec<Dim> change = pair.change(0, normal);
     EXPECT_NEAR(-1.0 + change[1], 0.2, 1e-15);
     EXPECT_EQ(change[0], 0.0);
   }
@@ -269,11 +276,12 @@ TYPED_TEST(Operators, OnlyApproachingPairsThatWouldBeTooNearCollide) {
 TYPED_TEST(Operators, CollisionsConserveMomentum) {
   constexpr int Dim = TypeParam::value;
   const Cloud<Dim> cloud(0.45);
+  const std::vector<Vec<Dim>> no_wall(cloud.particles.type.size());
   Vec<Dim> sum;
   int collided = 0;
   for (int i = 0; i < cloud.particles.owned; ++i) {
     const Vec<Dim> change = collision<Dim>(cloud.near, cloud.particles.position, cloud.particles.velocity,
-                                           cloud.particles.type, 0.1, 0.8, 0.2, i);
+                                           cloud.particles.type, no_wall, 0.1, 0.8, 0.2, i);
     sum += change;
     collided += norm(change) > 0.0;
   }
