@@ -10,15 +10,23 @@
 namespace impinge {
 namespace {
 
-// The phases of a step in PETSc's -log_view.
-enum Phase { predicting, redistributing, searching, measuring, assembling, solving, correcting, stocktaking };
+// Their names are phase_names.
+enum Phase {
+  predicting,
+  redistributing,
+  searching,
+  measuring,
+  assembling,
+  preconditioning,
+  solving,
+  correcting,
+  stocktaking
+};
 
 PetscLogStage stage(Phase phase) {
-  static const std::array<PetscLogStage, 8> stages = [] {
-    std::array<PetscLogStage, 8> all{};
-    const char* names[] = {"Predict",      "Redistribute", "Neighbours", "Density",
-                           "PPE assembly", "PPE solve",    "Correct",    "Stocktaking"};
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(names[k]);
+  static const auto stages = [] {
+    std::array<PetscLogStage, phase_names.size()> all{};
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(phase_names[k]);
     return all;
   }();
   return stages[phase];
@@ -77,6 +85,12 @@ void Simulation<Dim>::step() {
   correct();
   report_.time += report_.dt;
   take_stock();
+}
+
+template <int Dim>
+void Simulation<Dim>::forget_pressure() {
+  std::fill(particles_.pressure.begin(), particles_.pressure.end(), 0.0);
+  if (two_level_) two_level_->expire();
 }
 
 template <int Dim>
@@ -208,6 +222,7 @@ void Simulation<Dim>::solve_pressure() {
                                     far_sums_.number_density};
     pressure_solver_.assemble(equation, domain_.halo());
     if (two_level_) {
+      const LogStage log_set_up(stage(preconditioning));
       if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
         two_level_->set_owners(domain_.owners());
       two_level_->update(equation, particles_.position, pressure_solver_.matrix(), report_.pressure.iterations);
