@@ -10,15 +10,23 @@
 namespace impinge {
 namespace {
 
-// The phases of a step in PETSc's -log_view.
-enum Phase { predicting, redistributing, searching, measuring, assembling, solving, correcting, stocktaking };
+// Their names are phase_names.
+enum Phase {
+  predicting,
+  redistributing,
+  searching,
+  measuring,
+  assembling,
+  preconditioning,
+  solving,
+  correcting,
+  stocktaking
+};
 
 PetscLogStage stage(Phase phase) {
-  static const std::array<PetscLogStage, 8> stages = [] {
-    std::array<PetscLogStage, 8> all{};
-    const char* names[] = {"Predict",      "Redistribute", "Neighbours", "Density",
-                           "PPE assembly", "PPE solve",    "Correct",    "Stocktaking"};
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(names[k]);
+  static const auto stages = [] {
+    std::array<PetscLogStage, phase_names.size()> all{};
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(phase_names[k]);
     return all;
   }();
   return stages[phase];
@@ -80,6 +88,12 @@ void Simulation<Dim>::step() {
 }
 
 template <int Dim>
+void Simulation<Dim>::forget_pressure() {
+  std::fill(particles_.pressure.begin(), particles_.pressure.end(), 0.0);
+  if (two_level_) two_level_->expire();
+}
+
+template <int Dim>
 void Simulation<Dim>::choose_time_step() {
   const double largest = config_.time.cfl * config_.particles.spacing / report_.max_speed;  // infinite at rest
   report_.limit = largest < config_.time.dt ? StepLimit::cfl : StepLimit::case_dt;
@@ -114,8 +128,8 @@ void Simulation<Dim>::collide() {
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (moves(particles_.type[self]))
-      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type, wall_normal_,
-                                              report_.dt, distance, config_.collision.restitution, i);
+      velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
+                                              wall_normal_, report_.dt, distance, config_.collision.restitution, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
     particles_.velocity[i] += velocity_change_[i];
@@ -211,6 +225,7 @@ void Simulation<Dim>::solve_pressure() {
                                     far_sums_.number_density};
     pressure_solver_.assemble(equation, domain_.halo());
     if (two_level_) {
+      const LogStage log_set_up(stage(preconditioning));
       if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
         two_level_->set_owners(domain_.owners());
       two_level_->update(equation, particles_.position, pressure_solver_.diagonal(), report_.pressure.iterations);

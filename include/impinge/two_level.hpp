@@ -24,6 +24,9 @@ class TwoLevelPreconditioner {
   /// Takes the rank of each cell. Collective.
   void set_owners(std::span<const int> owner);
 
+  /// Makes the next update renew the coarse matrix.
+  void expire() { stale_ = true; }
+
   /// Follows the particles and renews the coarse matrix where it is due. `position`: owned and halo; `diagonal`: of A,
   /// valid until the solve; `iterations`: of the solve before. Collective.
   void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, std::span<const double> diagonal,

@@ -231,6 +231,9 @@ TEST(TwoLevelCoarseMatrix, IsRenewedWhenItIsOldOrIterationsGrowOrCellsMove) {
   cloud.two_level().set_owners(cloud.domain().owners());
   cloud.update(12);
   EXPECT_EQ(builds(), 4);
+  cloud.two_level().expire();
+  cloud.update(12);
+  EXPECT_EQ(builds(), 5);
   EXPECT_EQ(cloud.solve().failure, "");
 }
 
