@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -374,6 +375,7 @@ class CaseReader {
   void derive_max_speed();
   void derive_plate();
   void check_any();
+  void check_count(double volume);
   void check_jet();
   void check_multiples(std::string_view name, std::span<const double> lengths);
 
@@ -641,8 +643,18 @@ void CaseReader::check_any() {
   }
 }
 
+/// Particles that fill a volume [m^3, m^2 in 2D] are counted by 32-bit integers.
+void CaseReader::check_count(double volume) {
+  if (!usable({"particles.spacing", "dimension"})) return;
+  constexpr int most = std::numeric_limits<std::int32_t>::max();
+  const double count = volume / std::pow(config_.particles.spacing, config_.dimension);
+  if (count <= most) return;
+  mistake("particles.spacing", fmt::format("makes some {:.2g} particles; allowed: at most {}", count, most));
+}
+
 void CaseReader::check_jet() {
   const Config& c = config_;
+  if (usable({"jet.width", "jet.inlet_distance"})) check_count(c.jet.inlet_distance * c.jet.width * c.jet.width);
   if (usable({"dimension"}) && c.dimension != 2) mistake("dimension", "the jet has two dimensions; allowed: 2");
   check_multiples("jet.width", {&c.jet.width, 1});
   if (usable({"jet.width", "particles.spacing"}) && c.jet.width < (5.0 - 1e-6) * c.particles.spacing) {
@@ -679,7 +691,11 @@ void CaseReader::complete() {
   const Config& c = config_;
   const auto dimension = static_cast<std::size_t>(c.dimension);
   if (is(jet)) check_jet();
+  const auto product = [&](const Vector& size) {
+    return std::accumulate(size.begin(), size.begin() + c.dimension, 1.0, std::multiplies{});
+  };
   if (is(tank)) {
+    if (usable({"tank.size"})) check_count(product(c.tank.size));
     check_multiples("tank.size", {c.tank.size.data(), dimension});
     check_multiples("tank.fluid_height", {&c.tank.fluid_height, 1});
     if (usable({"tank.size", "tank.fluid_height"}) && c.tank.fluid_height > c.tank.size[dimension - 1]) {
@@ -688,6 +704,7 @@ void CaseReader::complete() {
     }
   }
   if (is(periodic_box)) {
+    if (usable({"periodic_box.size"})) check_count(product(c.periodic_box.size));
     check_multiples("periodic_box.size", {c.periodic_box.size.data(), dimension});
     if (usable({"periodic_box.size", "particles.spacing", "kernel.laplacian_radius"})) {
       const double least = 3.0 * c.kernel.laplacian_radius * c.particles.spacing;

@@ -69,6 +69,15 @@ class TankGeometry final : public Geometry<Dim> {
     });
   }
 
+  Vec<Dim> wall_normal(const Vec<Dim>& position) const override {
+    Vec<Dim> normal;
+    for (int axis = 0; axis < Dim; ++axis) {
+      if (position[axis] < 0.0) normal[axis] = 1.0;
+      if (position[axis] > size_[axis] && axis < Dim - 1) normal[axis] = -1.0;
+    }
+    return 1.0 / norm(normal) * normal;
+  }
+
   bool on_floor(const Vec<Dim>& position) const override {
     for (int axis = 0; axis < Dim - 1; ++axis)
       if (position[axis] < 0.0 || position[axis] > size_[axis]) return false;

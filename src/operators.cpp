@@ -12,6 +12,12 @@ void for_pairs(const PairList& list, int i, Use&& use) {
     use(static_cast<std::size_t>(list.index[static_cast<std::size_t>(k)]), list.weight[static_cast<std::size_t>(k)]);
 }
 
+// Of a pair's force: along the pair, but along the normal of a wall, which is smooth.
+template <int Dim>
+Vec<Dim> push_direction(const Vec<Dim>& offset, ParticleType type, const Vec<Dim>& wall_normal) {
+  return type == ParticleType::wall ? dot(offset, wall_normal) * wall_normal : offset;
+}
+
 }  // namespace
 
 void number_density(const PairList& near, std::span<double> density) {
@@ -49,7 +55,8 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
 
 template <int Dim>
 Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
-                           std::span<const ParticleType> type, double n0, int i) {
+                           std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double n0,
+                           int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vec<Dim> centre = position[self];
   const double own = pressure[self];
@@ -57,7 +64,7 @@ Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> posit
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (type[j] == ParticleType::ghost) return;
     const Vec<Dim> offset = position[j] - centre;
-    sum += (pressure[j] + own) * weight / dot(offset, offset) * offset;
+    sum += (pressure[j] + own) * weight / dot(offset, offset) * push_direction<Dim>(offset, type[j], wall_normal[j]);
   });
   return Dim / n0 * sum;
 }
@@ -72,7 +79,8 @@ Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> veloc
 
 template <int Dim>
 Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
-                   std::span<const ParticleType> type, double dt, double distance, double restitution, int i) {
+                   std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double dt,
+                   double distance, double restitution, int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vec<Dim> centre = position[self];
   const Vec<Dim> own = velocity[self];
@@ -81,12 +89,12 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
     if (type[j] == ParticleType::ghost) return;
     const Vec<Dim> offset = position[j] - centre;
     const Vec<Dim> relative = own - velocity[j];
-    const double approach = dot(relative, offset);
     const Vec<Dim> next = offset - dt * relative;
+    const Vec<Dim> direction = push_direction<Dim>(offset, type[j], wall_normal[j]);
+    const double approach = dot(relative, direction);
     if (approach <= 0.0 || dot(next, next) >= distance * distance) return;
-    const double r2 = dot(offset, offset);
     const double share = type[j] == ParticleType::fluid ? 0.5 : 1.0;
-    change -= share * (1.0 + restitution) * approach / r2 * offset;
+    change -= share * (1.0 + restitution) * approach / dot(direction, direction) * direction;
   });
   return change;
 }
@@ -95,10 +103,11 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
   template double asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                             \
   template double divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>, double, int); \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \
-                                           std::span<const ParticleType>, double, int);                                \
+                                           std::span<const ParticleType>, std::span<const Vec<Dim>>, double, int);     \
   template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \
   template Vec<Dim> collision<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,              \
-                                   std::span<const ParticleType>, double, double, double, int);
+                                   std::span<const ParticleType>, std::span<const Vec<Dim>>, double, double, double,   \
+                                   int);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)
 #undef IMPINGE_INSTANTIATE

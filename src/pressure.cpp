@@ -53,20 +53,30 @@ void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Im
 
 }  // namespace
 
-void PressureSolver::Block::clear() {
-  start.assign(1, 0);
-  column.clear();
-  value.clear();
+void PressureSolver::Block::reset(std::size_t rows, std::size_t most_entries) {
+  start.clear();
+  start.reserve(rows + 1);
+  start.push_back(0);
+  used = 0;
+  if (column.size() >= most_entries) return;
+  const std::size_t size = most_entries + most_entries / 8;
+  column.resize(size);
+  value.resize(size);
 }
 
-void PressureSolver::Block::append_row(std::vector<std::pair<PetscInt, double>>& entries) {
-  std::sort(entries.begin(), entries.end());
-  for (const auto& [to, entry] : entries) {
-    column.push_back(to);
-    value.push_back(entry);
-  }
-  start.push_back(static_cast<PetscInt>(column.size()));
+void PressureSolver::Block::append(PetscInt to, double entry) {
+  column[used] = to;
+  value[used++] = entry;
 }
+
+void PressureSolver::Block::merge(std::size_t row_begin, std::vector<std::pair<PetscInt, double>>& more) {
+  for (std::size_t k = row_begin; k < used; ++k) more.emplace_back(column[k], value[k]);
+  std::sort(more.begin(), more.end());
+  used = row_begin;
+  for (const auto& [to, entry] : more) append(to, entry);
+}
+
+void PressureSolver::Block::end_row() { start.push_back(static_cast<PetscInt>(used)); }
 
 PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), tolerance_(tolerance) {
   check(PCRegister(two_level, [](PC preconditioner) { return PCSetType(preconditioner, PCSHELL); }));
@@ -116,8 +126,6 @@ void PressureSolver::set_default_option(const char* name, const char* value) {
 void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo) {
   create_solver();  // KSPReset would leave a multigrid's levels with the sizes of the last step
   matrix_.reset();
-  diagonal_.clear();
-  off_diagonal_.clear();
   const int owned = equation.far.rows();
   first_row_ = 0;
   const PetscInt own_rows = owned;
@@ -125,35 +133,60 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   right_hand_side_.assign(static_cast<std::size_t>(owned), 0.0);
   find_pockets(equation, halo);
 
-  std::vector<std::pair<PetscInt, double>> own, others;  // entries of a row
+  const auto rows = static_cast<std::size_t>(owned);
+  const auto pairs = static_cast<std::size_t>(equation.far.pairs());
+  const auto halo_pairs = static_cast<std::size_t>(std::count_if(equation.far.index.begin(),
+                                                                 equation.far.index.begin() + equation.far.pairs(),
+                                                                 [&](int j) { return j >= owned; }));
+  diagonal_.reset(rows, rows + pairs);
+  off_diagonal_.reset(rows, ranks_of(comm_) > 1 ? halo_pairs : 0);
+  diagonal_entries_.assign(rows, equation.n0);
+  std::vector<std::pair<PetscInt, double>> images, others;  // of a row: periodic images, columns of other ranks
   for (int i = 0; i < owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
-    own.clear();
-    others.clear();
     if (equation.role[self] != PressureRole::unknown) {
-      own.emplace_back(i, equation.n0);
+      diagonal_.append(i, equation.n0);
     } else {
       right_hand_side_[self] = -equation.source[self] / equation.factor;
+      images.clear();
+      others.clear();
       double sum = 0.0;
+      const std::size_t row_begin = diagonal_.used;
+      std::size_t own_place = 0;  // of the diagonal entry; columns ascend
+      bool placed = false;
+      const auto place_own = [&] {
+        own_place = diagonal_.used;
+        diagonal_.append(i, 0.0);
+        placed = true;
+      };
       for (int k = equation.far.begin(i); k < equation.far.end(i); ++k) {
-        const auto j = static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]);
-        if (equation.role[j] == PressureRole::excluded) continue;
+        const int j = equation.far.index[static_cast<std::size_t>(k)];
+        const PressureRole role = equation.role[static_cast<std::size_t>(j)];
+        if (role == PressureRole::excluded) continue;
         const double weight = equation.far.weight[static_cast<std::size_t>(k)];
         sum += weight;
-        if (equation.role[j] == PressureRole::zero) continue;
-        const PetscInt column = equation.row[j] - first_row_;
-        if (column >= 0 && column < own_rows) {
-          own.emplace_back(column, -weight);
+        if (role == PressureRole::zero) continue;
+        const PetscInt row = equation.row[static_cast<std::size_t>(j)];
+        if (j < owned) {
+          if (j > i && !placed) place_own();
+          diagonal_.append(j, -weight);
+        } else if (row >= first_row_ && row < first_row_ + own_rows) {
+          images.emplace_back(row - first_row_, -weight);
         } else {
-          others.emplace_back(equation.row[j], -weight);
+          others.emplace_back(row, -weight);
         }
       }
+      if (!placed) place_own();
       if (sum == 0.0) sum = equation.n0;
       if (pocket_[self] == equation.row[self]) sum += equation.n0;
-      own.emplace_back(i, sum);
+      diagonal_.value[own_place] = sum;
+      diagonal_entries_[self] = sum;
+      if (!images.empty()) diagonal_.merge(row_begin, images);
+      std::sort(others.begin(), others.end());
+      for (const auto& [column, value] : others) off_diagonal_.append(column, value);
     }
-    diagonal_.append_row(own);
-    off_diagonal_.append_row(others);
+    diagonal_.end_row();
+    off_diagonal_.end_row();
   }
 
   // A pocket's source must be free of a mean, or no pressure field could answer it.

@@ -10,15 +10,23 @@
 namespace impinge {
 namespace {
 
-// The phases of a step in PETSc's -log_view.
-enum Phase { predicting, redistributing, searching, measuring, assembling, solving, correcting, stocktaking };
+// Their names are phase_names.
+enum Phase {
+  predicting,
+  redistributing,
+  searching,
+  measuring,
+  assembling,
+  preconditioning,
+  solving,
+  correcting,
+  stocktaking
+};
 
 PetscLogStage stage(Phase phase) {
-  static const std::array<PetscLogStage, 8> stages = [] {
-    std::array<PetscLogStage, 8> all{};
-    const char* names[] = {"Predict",      "Redistribute", "Neighbours", "Density",
-                           "PPE assembly", "PPE solve",    "Correct",    "Stocktaking"};
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(names[k]);
+  static const auto stages = [] {
+    std::array<PetscLogStage, phase_names.size()> all{};
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = LogStage::register_stage(phase_names[k]);
     return all;
   }();
   return stages[phase];
@@ -85,6 +93,12 @@ void Simulation<Dim>::step() {
 }
 
 template <int Dim>
+void Simulation<Dim>::forget_pressure() {
+  std::fill(particles_.pressure.begin(), particles_.pressure.end(), 0.0);
+  if (two_level_) two_level_->expire();
+}
+
+template <int Dim>
 void Simulation<Dim>::choose_time_step() {
   const double largest = config_.time.cfl * config_.particles.spacing / report_.max_speed;  // infinite at rest
   report_.limit = largest < config_.time.dt ? StepLimit::cfl : StepLimit::case_dt;
@@ -120,7 +134,7 @@ void Simulation<Dim>::collide() {
     const auto self = static_cast<std::size_t>(i);
     if (moves(particles_.type[self]))
       velocity_change_[self] = collision<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
-                                              report_.dt, distance, config_.collision.restitution, i);
+                                              wall_normal_, report_.dt, distance, config_.collision.restitution, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
     particles_.velocity[i] += velocity_change_[i];
@@ -157,6 +171,9 @@ void Simulation<Dim>::redistribute() {
   report_.lost += lost;
   if (lost > 0) fail("redistribute", fmt::format("{} particle(s) left the domain other than by an outlet", lost));
   domain_.build_halo(particles_);
+  wall_normal_.assign(static_cast<std::size_t>(particles_.size()), {});
+  for (std::size_t i = 0; i < wall_normal_.size(); ++i)
+    if (particles_.type[i] == ParticleType::wall) wall_normal_[i] = geometry_->wall_normal(particles_.position[i]);
 }
 
 template <int Dim>
@@ -213,9 +230,10 @@ void Simulation<Dim>::solve_pressure() {
                                     far_sums_.number_density};
     pressure_solver_.assemble(equation, domain_.halo());
     if (two_level_) {
+      const LogStage log_set_up(stage(preconditioning));
       if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
         two_level_->set_owners(domain_.owners());
-      two_level_->update(equation, particles_.position, pressure_solver_.matrix(), report_.pressure.iterations);
+      two_level_->update(equation, particles_.position, pressure_solver_.diagonal(), report_.pressure.iterations);
       two_level_->attach(pressure_solver_.preconditioner());
     }
   }
@@ -241,7 +259,7 @@ void Simulation<Dim>::correct() {
     if (moves(particles_.type[self]))
       velocity_change_[self] =
           -factor * pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure, particles_.type,
-                                           near_sums_.number_density, i);
+                                           wall_normal_, near_sums_.number_density, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];

@@ -236,12 +236,8 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& eq
 
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::update(const PressureEquation& equation, std::span<const Vec<Dim>> position,
-                                         Mat matrix, int iterations) {
-  const auto owned = static_cast<PetscInt>(equation.far.rows());
-  diagonal_.resize(static_cast<std::size_t>(owned));
-  PetscVector diagonal;
-  check(VecCreateMPIWithArray(comm_, 1, owned, PETSC_DETERMINE, diagonal_.data(), diagonal.address()));
-  check(MatGetDiagonal(matrix, diagonal));
+                                         std::span<const double> diagonal, int iterations) {
+  diagonal_ = diagonal;
   find_interpolation(equation, position);
   if (age_ == 1) fresh_iterations_ = iterations;
   if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
@@ -308,8 +304,7 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 
 template <int Dim>
 std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
-  return (diagonal_.capacity() + weight_.capacity() + root_value_.capacity() + leaf_value_.capacity()) *
-             sizeof(double) +
+  return (weight_.capacity() + root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
          (node_.capacity() + node_of_cell_.capacity() + cell_of_node_.capacity()) * sizeof(int) +
          number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
 }

@@ -42,6 +42,9 @@ class Geometry {
     return {};
   }
 
+  /// Unit normal of the wall, into the fluid, at one of its wall particles [-]; between the walls' normals in a corner.
+  virtual Vec<Dim> wall_normal(const Vec<Dim>& /*position*/) const { return {}; }
+
   /// True for a wall particle of the plate or floor, whose force the history gives.
   virtual bool on_floor(const Vec<Dim>& /*position*/) const { return false; }
 };

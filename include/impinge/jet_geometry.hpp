@@ -17,6 +17,7 @@ class JetGeometry final : public Geometry<2> {
   Vec<2> inlet_velocity() const override { return speed_ * along_; }
   BoundaryFlow move_boundaries(double dt, Particles<2>& particles,
                                const std::function<bool(const Vec<2>&)>& owns) override;
+  Vec<2> wall_normal(const Vec<2>&) const override { return {{0.0, 1.0}}; }
   bool on_floor(const Vec<2>& position) const override;
 
  private:

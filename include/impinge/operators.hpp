@@ -23,10 +23,11 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
                   double n0, int i);
 
 /// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
-/// carry no pressure and are left out.
+/// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
+/// pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall particles.
 template <int Dim>
 Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
-                           std::span<const ParticleType> type, double n0, int i);
+                           std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double n0, int i);
 
 /// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
 /// `factor` = 2 Dim/(n0 lambda) [1/m^2].
@@ -36,9 +37,10 @@ Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> veloc
 /// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
 /// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
 /// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
-/// not yield.
+/// not yield. A wall is smooth: the normal of a pair with it is the wall's.
 template <int Dim>
 Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
-                   std::span<const ParticleType> type, double dt, double distance, double restitution, int i);
+                   std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double dt,
+                   double distance, double restitution, int i);
 
 }  // namespace impinge

@@ -66,6 +66,9 @@ class PressureSolver {
   /// The options that this class set as defaults; the rest of the database is the user's.
   const std::vector<std::string>& default_options() const { return default_options_; }
 
+  /// Diagonal of the matrix of the last assemble, owned rows.
+  const std::vector<double>& diagonal() const { return diagonal_entries_; }
+
   /// Matrix of the last assemble.
   Mat matrix() const { return matrix_; }
 
@@ -76,8 +79,11 @@ class PressureSolver {
   struct Block {
     std::vector<PetscInt> start, column;
     std::vector<double> value;
-    void clear();
-    void append_row(std::vector<std::pair<PetscInt, double>>& entries);  // sorts them
+    std::size_t used = 0;  // entries; the arrays may be longer
+    void reset(std::size_t rows, std::size_t most_entries);
+    void append(PetscInt to, double entry);
+    void merge(std::size_t row_begin, std::vector<std::pair<PetscInt, double>>& more);  // into the last row, ascending
+    void end_row();
   };
 
   void create_solver();
@@ -89,6 +95,7 @@ class PressureSolver {
   bool is_two_level_ = false;
   PetscSolver solver_;
   std::vector<std::string> default_options_;
+  std::vector<double> diagonal_entries_;
   Block diagonal_;      // columns of this rank, local
   Block off_diagonal_;  // columns of other ranks, global
   PetscMatrix matrix_;

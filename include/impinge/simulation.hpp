@@ -1,6 +1,7 @@
 #pragma once
 // The state of a run and one time step.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -26,6 +27,10 @@ class SolveError : public std::runtime_error {
   std::int64_t step_;
   std::string phase_;
 };
+
+/// The phases of a step: stages in PETSc's -log_view.
+inline constexpr std::array phase_names{"Predict",    "Redistribute", "Neighbours", "Density",    "PPE assembly",
+                                        "PPE set-up", "PPE solve",    "Correct",    "Stocktaking"};
 
 /// What bounds the time step.
 enum class StepLimit { case_dt, cfl };
@@ -66,6 +71,9 @@ class Simulation {
 
   /// Advances by one time step. Throws SolveError; particles() then hold the state of the phase that failed.
   void step();
+
+  /// Makes the next pressure solve a cold one: it starts from zero and with a new coarse matrix.
+  void forget_pressure();
 
   /// Particles; number density and free surface are those the last pressure was solved with.
   const Particles<Dim>& particles() const { return particles_; }
@@ -119,6 +127,7 @@ class Simulation {
   StepReport report_;
   double window_begin_ = 0.0;
   double window_end_ = 0.0;
+  std::vector<Vec<Dim>> wall_normal_;  // zero but at wall particles
   std::vector<PressureRole> role_;
   std::vector<double> source_;
   std::vector<Vec<Dim>> velocity_change_;

@@ -28,9 +28,13 @@ class TwoLevelPreconditioner {
   /// Takes the rank of each cell. Collective.
   void set_owners(std::span<const int> owner);
 
-  /// Follows the particles and renews the coarse matrix where it is due. `position`: owned and halo. `iterations`: of
-  /// the solve before. Collective.
-  void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, Mat matrix, int iterations);
+  /// Makes the next update renew the coarse matrix.
+  void expire() { stale_ = true; }
+
+  /// Follows the particles and renews the coarse matrix where it is due. `position`: owned and halo; `diagonal`: of A,
+  /// valid until the solve; `iterations`: of the solve before. Collective.
+  void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, std::span<const double> diagonal,
+              int iterations);
 
   /// Makes `preconditioner` (a shell) this one. Collective.
   void attach(PC preconditioner);
@@ -68,11 +72,11 @@ class TwoLevelPreconditioner {
   std::size_t owned_cells_ = 0;
   PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
 
-  std::vector<double> diagonal_;   // of A, owned rows
-  std::vector<int> node_;          // P: corners entries per owned particle, -1 for none
-  std::vector<double> weight_;     // likewise
-  std::vector<PetscInt> number_;   // row of A_c of a local node, -1 for none
-  std::vector<std::size_t> root_;  // root of each row of A_c on this rank
+  std::span<const double> diagonal_;  // of A, owned rows
+  std::vector<int> node_;             // P: corners entries per owned particle, -1 for none
+  std::vector<double> weight_;        // likewise
+  std::vector<PetscInt> number_;      // row of A_c of a local node, -1 for none
+  std::vector<std::size_t> root_;     // root of each row of A_c on this rank
   std::vector<double> root_value_;
   std::vector<double> leaf_value_;
   PetscMatrix coarse_matrix_;

@@ -99,7 +99,7 @@ class Distributed {
       two_level_.emplace(comm_, domain_.cells());
       two_level_->set_owners(domain_.owners());
     }
-    two_level_->update(equation, particles_.position, solver_.matrix(), 0);
+    two_level_->update(equation, particles_.position, solver_.diagonal(), 0);
     two_level_->attach(solver_.preconditioner());
   }
 

@@ -66,7 +66,7 @@ class Cloud {
   const Particles<Dim>& particles() const { return particles_; }
   PressureRole role(std::size_t i) const { return role_[i]; }
 
-  void update(int iterations) { two_level_.update(equation(), particles_.position, solver_.matrix(), iterations); }
+  void update(int iterations) { two_level_.update(equation(), particles_.position, solver_.diagonal(), iterations); }
 
   PressureReport solve() {
     two_level_.attach(solver_.preconditioner());
@@ -231,6 +231,9 @@ TEST(TwoLevelCoarseMatrix, IsRenewedWhenItIsOldOrIterationsGrowOrCellsMove) {
   cloud.two_level().set_owners(cloud.domain().owners());
   cloud.update(12);
   EXPECT_EQ(builds(), 4);
+  cloud.two_level().expire();
+  cloud.update(12);
+  EXPECT_EQ(builds(), 5);
   EXPECT_EQ(cloud.solve().failure, "");
 }
 

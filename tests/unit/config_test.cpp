@@ -313,6 +313,14 @@ TEST(Config, PeriodsAreThreeRadiiLong) {
                   "allowed: >= 0.030075 (m)"});
 }
 
+TEST(Config, ParticlesCanBeCounted) {
+  EXPECT_EQ(mistakes_in("particles.spacing = 1e-7"),
+            Texts{"case.toml:1: particles.spacing = 1e-07: makes some 5.6e+13 particles; allowed: at most 2147483647"});
+  EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", tank_base).size(), 1u);
+  EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", box_base).front(),
+            "case.toml:1: particles.spacing = 1e-07: makes some 1e+12 particles; allowed: at most 2147483647");
+}
+
 TEST(Config, EarlierFilesOverrideLaterOnesAndSettingsAll) {
   const std::vector<NamedText> files{{"case.toml", "pressure.gamma = 0.1\ntime.dt = 1e-4"},
                                      {"common.toml", "pressure.gamma = 0.2\ntime.cfl = 0.1\ntime.dt = 1e-5"},

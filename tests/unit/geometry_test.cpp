@@ -14,6 +14,7 @@
 
 #include "impinge/analytic_jet.hpp"
 #include "impinge/lattice.hpp"
+#include "shipped_case.hpp"
 
 namespace impinge {
 namespace {
@@ -356,6 +357,17 @@ TEST_P(JetInlet, SteadyStartFillsTheAnalyticJet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Angles, JetInlet, testing::Values(30.0, 47.0, 60.0, 90.0));
+
+TEST(Tank, WallNormalsPointIntoTheFluid) {
+  const auto tank = make_geometry<2>(shipped_case("hydrostatic.toml"));  // 0.2 m wide
+  EXPECT_EQ(tank->wall_normal({{0.1, -0.005}}), (Vec<2>{{0.0, 1.0}}));
+  EXPECT_EQ(tank->wall_normal({{-0.005, 0.1}}), (Vec<2>{{1.0, 0.0}}));
+  EXPECT_EQ(tank->wall_normal({{0.205, 0.1}}), (Vec<2>{{-1.0, 0.0}}));
+  const Vec<2> corner = tank->wall_normal({{0.205, -0.005}});
+  EXPECT_DOUBLE_EQ(corner[0], -std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(corner[1], std::sqrt(0.5));
+  EXPECT_EQ(make_geometry<2>(shipped_case("jet60-quick.toml"))->wall_normal({{0.5, -0.01}}), (Vec<2>{{0.0, 1.0}}));
+}
 
 }  // namespace
 }  // namespace impinge

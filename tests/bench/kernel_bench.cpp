@@ -1,0 +1,155 @@
+// The inner loops of a step on one rank, by Google Benchmark (its options: --benchmark_filter=REGEX, ...), on jittered
+// blocks of fluid whose uppermost row has p = 0.
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <random>
+
+#include "cloud.hpp"
+#include "impinge/domain.hpp"
+#include "impinge/operators.hpp"
+#include "impinge/two_level.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr double near_radius = 2.1;
+constexpr double far_radius = 4.01;
+
+/// A block of n particles along each axis, with all that the loops read and write. Unit spacing.
+template <int Dim>
+class Block {
+ public:
+  explicit Block(int n)
+      : particles(make_cloud<Dim>(cube(n), 0.1)),
+        domain(MPI_COMM_SELF, box(n), {}, far_radius, Partitioner::metis),
+        search(domain.sorting_cells(), Domain<Dim>::cell_parts, KernelType::non_singular, near_radius, far_radius),
+        solver(MPI_COMM_SELF, 1e-6),
+        two_level(MPI_COMM_SELF, domain.cells()),
+        near_sums(lattice_sums<Dim>(KernelType::non_singular, near_radius)),
+        far_sums(lattice_sums<Dim>(KernelType::non_singular, far_radius)) {
+    domain.partition(particles);
+    domain.migrate(particles);
+    domain.build_halo(particles);
+    search.search(particles);
+    for (const auto& position : particles.position)
+      role.push_back(position[Dim - 1] > n - 1 ? PressureRole::zero : PressureRole::unknown);
+    source = particles.pressure;
+    gradient.resize(source.size());
+    solver.assemble(equation(), domain.halo());
+    two_level.set_owners(domain.owners());
+    two_level.update(equation(), particles.position, solver.diagonal(), 0);
+    check(MatCreateVecs(solver.matrix(), x.address(), y.address()));
+    check(VecSet(x, 1.0));
+    check(PCCreate(MPI_COMM_SELF, &preconditioner));
+    check(PCSetType(preconditioner, PCSHELL));
+    check(PCSetOperators(preconditioner, solver.matrix(), solver.matrix()));
+    two_level.attach(preconditioner);
+  }
+  ~Block() { PCDestroy(&preconditioner); }
+
+  PressureEquation equation() const {
+    const double factor = 2.0 * Dim / (far_sums.number_density * far_sums.lambda);
+    return {search.far(), role, domain.rows(), source, factor, far_sums.number_density};
+  }
+
+  Particles<Dim> particles;
+  Domain<Dim> domain;
+  NeighbourSearch<Dim> search;
+  PressureSolver solver;
+  TwoLevelPreconditioner<Dim> two_level;
+  LatticeSums near_sums, far_sums;
+  std::vector<PressureRole> role;
+  std::vector<double> source;
+  std::vector<Vec<Dim>> gradient;
+  PC preconditioner = nullptr;
+  PetscVector x, y;
+
+ private:
+  static std::array<int, Dim> cube(int n) {
+    std::array<int, Dim> extent;
+    extent.fill(n);
+    return extent;
+  }
+
+  static Box<Dim> box(int n) {
+    Box<Dim> result;
+    for (int k = 0; k < Dim; ++k) result.high[k] = n;
+    return result;
+  }
+};
+
+/// Registers a benchmark of action(), and reports its time per item too.
+template <class Action>
+void add(const std::string& name, double items, Action action) {
+  benchmark::RegisterBenchmark(name.c_str(), [items, action](benchmark::State& state) mutable {
+    for (auto _ : state) {
+      action();
+      benchmark::ClobberMemory();
+    }
+    state.counters["s/item"] =
+        benchmark::Counter(items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  })->Unit(benchmark::kMicrosecond);
+}
+
+template <class Kernel>
+void add_kernel(const char* name) {
+  std::mt19937 random(42);
+  std::uniform_real_distribution<double> uniform(0.5, 1.2 * far_radius);
+  std::vector<double> distance(4096);
+  for (double& r : distance) r = uniform(random);
+  add(fmt::format("kernel/{}", name), static_cast<double>(distance.size()),
+      [distance, weight = std::vector<double>(distance.size())]() mutable {
+        for (std::size_t k = 0; k < distance.size(); ++k) weight[k] = Kernel::weight(distance[k], far_radius);
+        benchmark::DoNotOptimize(weight.data());
+      });
+}
+
+template <int Dim>
+void add_loops(Block<Dim>& block) {
+  const int n = block.particles.owned;
+  const auto add_loop = [&](const char* name, auto action) { add(fmt::format("{}D/{}/{}", Dim, n, name), n, action); };
+  add_loop("neighbours", [&block] { block.search.search(block.particles); });
+  add_loop("number_density", [&block] { number_density(block.search.near(), block.particles.number_density); });
+  add_loop("divergence", [&block, n] {
+    for (int i = 0; i < n; ++i)
+      benchmark::DoNotOptimize(divergence<Dim>(block.search.near(), block.particles.position, block.particles.velocity,
+                                               block.near_sums.number_density, i));
+  });
+  add_loop("gradient", [&block, n, no_wall = std::vector<Vec<Dim>>(block.particles.type.size())] {
+    for (int i = 0; i < n; ++i)
+      block.gradient[static_cast<std::size_t>(i)] =
+          pressure_gradient<Dim>(block.search.near(), block.particles.position, block.particles.pressure,
+                                 block.particles.type, no_wall, block.near_sums.number_density, i);
+  });
+  add_loop("matmult", [&block] { check(MatMult(block.solver.matrix(), block.x, block.y)); });
+  add_loop("two_level_apply", [&block] { check(PCApply(block.preconditioner, block.x, block.y)); });
+  add_loop("two_level_set_up", [&block] {
+    block.two_level.expire();
+    block.two_level.update(block.equation(), block.particles.position, block.solver.diagonal(), 0);
+  });
+  add_loop("assembly", [&block] { block.solver.assemble(block.equation(), block.domain.halo()); });
+}
+
+}  // namespace
+}  // namespace impinge
+
+int main(int argc, char** argv) {
+  using namespace impinge;
+  MPI_Init(&argc, &argv);
+  benchmark::Initialize(&argc, argv);
+  if (!benchmark::ReportUnrecognizedArguments(argc, argv)) {
+    const PetscSession session(argv[0], {});
+    Block<2> flat(180), large_flat(560);
+    Block<3> cube(32), large_cube(46);
+    add_kernel<NonSingularKernel>("non_singular");
+    add_kernel<SingularKernel>("singular");
+    add_loops(flat);
+    add_loops(large_flat);
+    add_loops(cube);
+    add_loops(large_cube);
+    benchmark::RunSpecifiedBenchmarks();
+  }
+  MPI_Finalize();
+}
