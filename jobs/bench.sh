@@ -51,8 +51,6 @@ jet() {
     --set "pressure.gamma=$(quotient 0.8 "$resolution")" "$@"
 }
 
-quotient() { awk "BEGIN {printf \"%.15g\", $1 / $2}"; }
-
 # tabulate TABLE "H/DP..." OPTIONS...
 tabulate() {
   local table=$1 resolutions=$2 resolution files=()

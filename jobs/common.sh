@@ -20,3 +20,6 @@ run_mpi() {
   shift
   mpirun --oversubscribe -n "$ranks" "$@"
 }
+
+# quotient A B: A / B, to 15 digits
+quotient() { awk "BEGIN {printf \"%.15g\", $1 / $2}"; }

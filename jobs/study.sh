@@ -31,8 +31,8 @@ for case in "${cases[@]}"; do
   if ! grep -qs '"status": "\(finished\|failed\)"' "$directory/validation/validation.json"; then
     echo "== $case, H/dp = $resolution"
     code=0
-    run_mpi "$ranks" "$bin/impinge" "input/paper/$case.toml" --set "particles.spacing=$(awk "BEGIN {printf \"%.15g\", 0.4 / $resolution}")" \
-      --set "time.dt=$(awk "BEGIN {printf \"%.15g\", 2e-4 * 80 / $resolution}")" --set "output.directory=$directory" || code=$?
+    run_mpi "$ranks" "$bin/impinge" "input/paper/$case.toml" --set "particles.spacing=$(quotient 0.4 "$resolution")" \
+      --set "time.dt=$(quotient 0.016 "$resolution")" --set "output.directory=$directory" || code=$?
     [ $code -eq 0 ] || [ $code -eq 3 ] || exit $code
     "$bin/impinge-validate" "$directory"
   fi

@@ -51,6 +51,11 @@ void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Im
   }
 }
 
+std::size_t halo_pairs(const PairList& list) {
+  const auto end = list.index.begin() + list.pairs();
+  return static_cast<std::size_t>(std::count_if(list.index.begin(), end, [&](int j) { return j >= list.rows(); }));
+}
+
 }  // namespace
 
 void PressureSolver::Block::reset(std::size_t rows, std::size_t most_entries) {
@@ -135,11 +140,9 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
 
   const auto rows = static_cast<std::size_t>(owned);
   const auto pairs = static_cast<std::size_t>(equation.far.pairs());
-  const auto halo_pairs = static_cast<std::size_t>(std::count_if(equation.far.index.begin(),
-                                                                 equation.far.index.begin() + equation.far.pairs(),
-                                                                 [&](int j) { return j >= owned; }));
+  const bool distributed = ranks_of(comm_) > 1;
   diagonal_.reset(rows, rows + pairs);
-  off_diagonal_.reset(rows, ranks_of(comm_) > 1 ? halo_pairs : 0);
+  off_diagonal_.reset(rows, distributed ? halo_pairs(equation.far) : 0);
   diagonal_entries_.assign(rows, equation.n0);
   std::vector<std::pair<PetscInt, double>> images, others;  // of a row: periodic images, columns of other ranks
   for (int i = 0; i < owned; ++i) {
@@ -207,7 +210,7 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   }
 
   // The matrix uses the arrays as they are, without a copy.
-  if (ranks_of(comm_) == 1) {
+  if (!distributed) {
     check(MatCreateSeqAIJWithArrays(comm_, own_rows, own_rows, diagonal_.start.data(), diagonal_.column.data(),
                                     diagonal_.value.data(), matrix_.address()));
   } else {

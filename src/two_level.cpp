@@ -138,13 +138,18 @@ void TwoLevelPreconditioner<Dim>::find_interpolation(const PressureEquation& equ
 }
 
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::number_nodes() {
-  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+void TwoLevelPreconditioner<Dim>::sum_at_roots() {
   std::fill(root_value_.begin(), root_value_.end(), 0.0);
-  for (std::size_t k = 0; k < node_.size(); ++k)
-    if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k];
   check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
   check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::number_nodes() {
+  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  for (std::size_t k = 0; k < node_.size(); ++k)
+    if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k];
+  sum_at_roots();
   root_.clear();
   for (std::size_t k = 0; k < owned_cells_; ++k)
     if (root_value_[k] >= least_node_weight) root_.push_back(k);
@@ -276,9 +281,7 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
   for (std::size_t i = 0; i < owned; ++i)
     for (std::size_t k = i * corners; k < (i + 1) * corners; ++k)
       if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k] * r[i];
-  std::fill(root_value_.begin(), root_value_.end(), 0.0);
-  check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
-  check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  sum_at_roots();
 
   double* coarse = nullptr;
   check(VecGetArray(coarse_residual_, &coarse));

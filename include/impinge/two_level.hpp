@@ -61,6 +61,7 @@ class TwoLevelPreconditioner {
   int local_node(const std::array<int, Dim>& coordinates) const;
   Place place(const Vec<Dim>& position) const;
   void find_interpolation(const PressureEquation& equation, std::span<const Vec<Dim>> position);
+  void sum_at_roots();  // leaf_value_ into root_value_
   void number_nodes();
   void build_coarse_matrix(const PressureEquation& equation, std::span<const Vec<Dim>> position);
   void apply(::Vec residual, ::Vec result);

@@ -44,6 +44,16 @@ Particles<Dim> share_of(const Particles<Dim>& all, MPI_Comm of = comm) {
   return share;
 }
 
+/// This rank's particles after a partition, with their halo.
+template <int Dim>
+Particles<Dim> settled_share(Domain<Dim>& domain, const Particles<Dim>& all, MPI_Comm of = comm) {
+  Particles<Dim> particles = share_of(all, of);
+  domain.partition(particles);
+  domain.migrate(particles);
+  domain.build_halo(particles);
+  return particles;
+}
+
 template <int Dim>
 Domain<Dim> make_domain(bool periodic, Partitioner partitioner = Partitioner::metis, MPI_Comm of = comm) {
   Box<Dim> box;
@@ -144,10 +154,7 @@ TYPED_TEST(Domains, DensitiesAreBitwiseThoseOfASingleRank) {
     const Particles<Dim> all = cloud<Dim>();
     const auto measure = [&](MPI_Comm of) {
       auto domain = make_domain<Dim>(periodic, partitioner, of);
-      Particles<Dim> particles = share_of(all, of);
-      domain.partition(particles);
-      domain.migrate(particles);
-      domain.build_halo(particles);
+      Particles<Dim> particles = settled_share(domain, all, of);
       const auto density = densities(domain, particles);
       return std::array{gather_by_id(of, particles, density[0]), gather_by_id(of, particles, density[1])};
     };
@@ -160,10 +167,7 @@ TYPED_TEST(Domains, HaloCompletesTheDensityOfBruteForce) {
   this->for_variants([](bool periodic, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
     auto domain = make_domain<Dim>(periodic, partitioner);
-    Particles<Dim> particles = share_of(all);
-    domain.partition(particles);
-    domain.migrate(particles);
-    domain.build_halo(particles);
+    Particles<Dim> particles = settled_share(domain, all);
     const auto density = densities(domain, particles);
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
       double near = 0.0, far = 0.0;
@@ -189,10 +193,7 @@ TYPED_TEST(Domains, HaloCarriesFieldsRowsAndShiftedPositions) {
   this->for_variants([](bool periodic, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
     auto domain = make_domain<Dim>(periodic, partitioner);
-    Particles<Dim> particles = share_of(all);
-    domain.partition(particles);
-    domain.migrate(particles);
-    domain.build_halo(particles);
+    Particles<Dim> particles = settled_share(domain, all);
     const auto rows = domain.rows();
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(particles.size()));
     const auto row_of =
