@@ -23,3 +23,15 @@ run_mpi() {
 
 # quotient A B: A / B, to 15 digits
 quotient() { awk "BEGIN {printf \"%.15g\", $1 / $2}"; }
+
+# measure_jet RANKS DIR CASE [WORD...]: runs a jet into DIR and validates it, unless it is finished there. A run that
+# diverges is a result, too.
+measure_jet() {
+  local ranks=$1 directory=$2 code=0
+  shift 2
+  if grep -qs '"status": "\(finished\|failed\)"' "$directory/validation/validation.json"; then return; fi
+  echo "== $directory"
+  run_mpi "$ranks" "$bin/impinge" "$@" --set "output.directory=$directory" || code=$?
+  [ $code -eq 0 ] || [ $code -eq 3 ] || exit $code
+  "$bin/impinge-validate" "$directory"
+}

@@ -27,14 +27,7 @@ set_up
 
 root=output/study-$resolution
 for case in "${cases[@]}"; do
-  directory=$root/$case
-  if ! grep -qs '"status": "\(finished\|failed\)"' "$directory/validation/validation.json"; then
-    echo "== $case, H/dp = $resolution"
-    code=0
-    run_mpi "$ranks" "$bin/impinge" "input/paper/$case.toml" --set "particles.spacing=$(quotient 0.4 "$resolution")" \
-      --set "time.dt=$(quotient 0.016 "$resolution")" --set "output.directory=$directory" || code=$?
-    [ $code -eq 0 ] || [ $code -eq 3 ] || exit $code
-    "$bin/impinge-validate" "$directory"
-  fi
+  measure_jet "$ranks" "$root/$case" "input/paper/$case.toml" --set "particles.spacing=$(quotient 0.4 "$resolution")" \
+    --set "time.dt=$(quotient 0.016 "$resolution")"
 done
 /usr/bin/python3 jobs/table.py "$root" | tee "$root/table.txt"

@@ -63,6 +63,8 @@ constexpr Range from_to(double low, double high) { return {low, high, true, true
 constexpr Range above_to(double low, double high) { return {low, high, false, true}; }
 
 // The words of the enumerations, in the order of their values.
+constexpr auto words(Scheme) { return std::to_array<std::string_view>({"consistent", "paper"}); }
+constexpr auto words(WallModel) { return std::to_array<std::string_view>({"mirror", "columns", "particles"}); }
 constexpr auto words(GeometryType) { return std::to_array<std::string_view>({"jet", "tank", "periodic_box"}); }
 constexpr auto words(KernelType) { return std::to_array<std::string_view>({"non_singular", "singular"}); }
 constexpr auto words(JetStart) { return std::to_array<std::string_view>({"impact", "steady"}); }
@@ -70,8 +72,9 @@ constexpr auto words(Partitioner) { return std::to_array<std::string_view>({"met
 
 template <class T>
 using Member = T& (*)(Config&);
-using AnyMember = std::variant<Member<double>, Member<int>, Member<bool>, Member<std::string>, Member<Vector>,
-                               Member<GeometryType>, Member<KernelType>, Member<JetStart>, Member<Partitioner>>;
+using AnyMember =
+    std::variant<Member<double>, Member<int>, Member<bool>, Member<std::string>, Member<Vector>, Member<Scheme>,
+                 Member<WallModel>, Member<GeometryType>, Member<KernelType>, Member<JetStart>, Member<Partitioner>>;
 
 struct Key {
   std::string_view name;  ///< dotted, as in the case file
@@ -104,6 +107,8 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(geometry), every, "", {}, required, "what is computed"},
       {IMPINGE_KEY(dimension), every, "", from_to(2, 3), "", "dimension of space; the jet has 2"},
 
+      {IMPINGE_KEY(scheme), every, "", {}, "", "paper: the operators of Tang & Wan; consistent: more accurate ones"},
+
       {IMPINGE_KEY(fluid.density), every, "kg/m^3", positive, "", "density rho"},
       {IMPINGE_KEY(fluid.viscosity), every, "m^2/s", not_negative, "", "kinematic viscosity nu"},
       {IMPINGE_KEY(fluid.gravity), every, "m/s^2", any_number, "", "gravity; the last component is the vertical one"},
@@ -116,10 +121,34 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(kernel.laplacian_radius), every, "dp", above_to(1, 6), "", "effective radius of the Laplacian"},
 
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
-       "weight of the density term in the source of the pressure equation; 1 - gamma weighs the divergence"},
+       "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
+       "1 - gamma weighs the divergence"},
+      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.5; paper: 0.0",
+       "speed C in largest fluid speeds at which density errors are corrected: gamma = (C u_max dt/dp)^2; 0: "
+       "pressure.gamma"},
+      {IMPINGE_KEY(pressure.corrected_divergence),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "correct the divergence by the local moment matrix, so that it is exact on linear velocities"},
+      {IMPINGE_KEY(pressure.corrected_gradient),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "inside the fluid, a gradient of pressure differences corrected likewise; the paper's at the surface"},
       {IMPINGE_KEY(pressure.tolerance), every, "", above_to(0, 1e-6), "",
        "relative residual at which the pressure equation counts as solved"},
       {IMPINGE_KEY(pressure.clamp_negative), every, "", {}, "", "set negative pressures to zero after the solve"},
+
+      {IMPINGE_KEY(walls.model),
+       every,
+       "",
+       {},
+       "\"mirror\"; paper: \"particles\"",
+       "mirror: the fluid's mirror images; columns: wall particles, each of one pressure with the ghosts behind it; "
+       "particles: wall particles, and ghosts without a pressure"},
 
       {IMPINGE_KEY(free_surface.surface_density), every, "n0", from_to(0, 1), "",
        "a particle of smaller number density is on the free surface"},
@@ -127,8 +156,24 @@ const std::vector<Key>& keys() {
        "a particle of larger number density is inside the fluid"},
       {IMPINGE_KEY(free_surface.asymmetry), every, "|F|0", from_to(0, 2), "",
        "between the two densities: on the free surface if the asymmetry |F| is larger than this"},
+      {IMPINGE_KEY(free_surface.zero_outside),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "p = 0 half a spacing outside the surface particles instead of at them"},
 
-      {IMPINGE_KEY(collision.distance), every, "dp", from_to(0, 1), "",
+      {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "2.0; paper: 0.0",
+       "particles move by this times the asymmetry F and the Courant number u_max dt/dp each step, along the free "
+       "surface only; 0: they do not"},
+      {IMPINGE_KEY(shifting.correct_velocity),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "a shifted particle takes the velocity of its new place, by the local gradient"},
+
+      {IMPINGE_KEY(collision.distance), every, "dp", from_to(0, 1), "0.5; paper: 0.8",
        "approaching particles nearer than this collide; 0: none do"},
       {IMPINGE_KEY(collision.restitution), every, "", from_to(0, 1), "", "coefficient of restitution of a collision"},
 
@@ -372,6 +417,7 @@ class CaseReader {
   void mistake(std::string_view name, std::string_view what);
 
   void derive_defaults();
+  void derive_scheme();
   void derive_max_speed();
   void derive_plate();
   void check_any();
@@ -598,12 +644,29 @@ void CaseReader::derive_plate() {
   if (!given("plate.end")) config_.plate.end = std::ceil(end / spacing - 1e-6) * spacing;
 }
 
+/// Config's own initial values are those of the paper's scheme.
+void CaseReader::derive_scheme() {
+  if (config_.scheme == Scheme::paper) return;
+  const auto derive = [&](std::string_view name, auto& value, auto by_scheme) {
+    if (!given(name)) value = by_scheme;
+  };
+  derive("walls.model", config_.walls.model, WallModel::mirror);
+  derive("pressure.density_speed", config_.pressure.density_speed, 0.5);
+  derive("pressure.corrected_divergence", config_.pressure.corrected_divergence, true);
+  derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);
+  derive("free_surface.zero_outside", config_.free_surface.zero_outside, true);
+  derive("shifting.coefficient", config_.shifting.coefficient, 2.0);
+  derive("shifting.correct_velocity", config_.shifting.correct_velocity, true);
+  derive("collision.distance", config_.collision.distance, 0.5);
+}
+
 void CaseReader::derive_defaults() {
   if (!given("name")) config_.name = fs::path(files_.front().name).stem();
   if (!given("output.directory")) config_.output.directory = fmt::format("output/{}", config_.name);
   config_.output.directory_place =
       given("output.directory") ? entries_.find("output.directory")->second.place.text() : files_.front().name;
   if (!given("output.average_start")) config_.output.average_start = 0.8 * config_.time.end;
+  derive_scheme();
   if (!given("time.max_speed")) derive_max_speed();
   if (is(jet)) derive_plate();
 }

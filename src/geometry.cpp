@@ -1,5 +1,6 @@
 #include "impinge/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,13 +22,24 @@ struct BoxLattice {
     for (const auto n : extent) points *= n;
     return points;
   }
-  Vec<Dim> point(std::int64_t k) const {
-    Vec<Dim> position;
-    for (int axis = Dim - 1; axis >= 0; --axis) {
-      const auto n = extent[static_cast<std::size_t>(axis)];
-      position[axis] = low[axis] + (static_cast<double>(k % n) + 0.5) * spacing;
-      k /= n;
+  std::array<std::int64_t, Dim> coordinates(std::int64_t k) const {
+    std::array<std::int64_t, Dim> at;
+    for (std::size_t axis = Dim; axis-- > 0;) {
+      at[axis] = k % extent[axis];
+      k /= extent[axis];
     }
+    return at;
+  }
+  std::int64_t index(const std::array<std::int64_t, Dim>& at) const {
+    std::int64_t k = 0;
+    for (std::size_t axis = 0; axis < Dim; ++axis) k = k * extent[axis] + at[axis];
+    return k;
+  }
+  Vec<Dim> point(std::int64_t k) const {
+    const auto at = coordinates(k);
+    Vec<Dim> position;
+    for (int axis = 0; axis < Dim; ++axis)
+      position[axis] = low[axis] + (static_cast<double>(at[static_cast<std::size_t>(axis)]) + 0.5) * spacing;
     return position;
   }
 };
@@ -36,7 +48,8 @@ struct BoxLattice {
 template <int Dim>
 class TankGeometry final : public Geometry<Dim> {
  public:
-  explicit TankGeometry(const Config& config) : fluid_height_(config.tank.fluid_height) {
+  explicit TankGeometry(const Config& config)
+      : fluid_height_(config.tank.fluid_height), mirror_(config.walls.model == WallModel::mirror) {
     lattice_.spacing = config.particles.spacing;
     for (int k = 0; k < Dim; ++k) {
       const auto axis = static_cast<std::size_t>(k);
@@ -47,15 +60,24 @@ class TankGeometry final : public Geometry<Dim> {
   }
 
   Box<Dim> bounds() const override {
-    Box<Dim> box{lattice_.low, size_};
-    for (int k = 0; k < Dim - 1; ++k) box.high[k] += wall_layers * lattice_.spacing;
+    Box<Dim> box{mirror_ ? Vec<Dim>{} : lattice_.low, size_};
+    if (!mirror_)
+      for (int k = 0; k < Dim - 1; ++k) box.high[k] += wall_layers * lattice_.spacing;
     box.high[Dim - 1] += size_[Dim - 1];
     return box;
   }
 
+  Edges<Dim> edges() const override {
+    Edges<Dim> all;
+    if (!mirror_) return all;
+    all.fill({Edge::mirror, Edge::mirror});
+    all[Dim - 1].high = Edge::open;
+    return all;
+  }
+
   void fill(int rank, int ranks, Particles<Dim>& particles) const override {
     for_share(lattice_.count(), rank, ranks, [&](std::int64_t k) {
-      const Vec<Dim> position = lattice_.point(k);
+      Vec<Dim> position = lattice_.point(k);
       double depth = 0.0;  // into the walls
       for (int axis = 0; axis < Dim; ++axis) {
         depth = std::max(depth, -position[axis]);
@@ -65,6 +87,10 @@ class TankGeometry final : public Geometry<Dim> {
       const ParticleType type = depth == 0.0               ? ParticleType::fluid
                                 : depth < lattice_.spacing ? ParticleType::wall
                                                            : ParticleType::ghost;
+      if (mirror_ && type == ParticleType::ghost) return;
+      if (mirror_)  // wall particles stand on the surface
+        for (int axis = 0; axis < Dim; ++axis)
+          position[axis] = std::clamp(position[axis], 0.0, std::nextafter(size_[axis], 0.0));
       particles.append({position, {}, 0.0, 0.0, k, type});
     });
   }
@@ -72,21 +98,35 @@ class TankGeometry final : public Geometry<Dim> {
   Vec<Dim> wall_normal(const Vec<Dim>& position) const override {
     Vec<Dim> normal;
     for (int axis = 0; axis < Dim; ++axis) {
-      if (position[axis] < 0.0) normal[axis] = 1.0;
-      if (position[axis] > size_[axis] && axis < Dim - 1) normal[axis] = -1.0;
+      if (position[axis] <= 0.0) normal[axis] = 1.0;
+      if (is_past_high(position, axis)) normal[axis] = -1.0;
     }
     return 1.0 / norm(normal) * normal;
   }
 
+  std::int64_t wall_of_ghost(std::int64_t ghost) const override {
+    std::array<std::int64_t, Dim> at = lattice_.coordinates(ghost);
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      at[axis] = std::max<std::int64_t>(at[axis], wall_layers - 1);
+      if (axis < Dim - 1) at[axis] = std::min(at[axis], lattice_.extent[axis] - wall_layers);
+    }
+    return lattice_.index(at);
+  }
+
   bool on_floor(const Vec<Dim>& position) const override {
     for (int axis = 0; axis < Dim - 1; ++axis)
-      if (position[axis] < 0.0 || position[axis] > size_[axis]) return false;
-    return position[Dim - 1] < 0.0;
+      if (position[axis] <= 0.0 || is_past_high(position, axis)) return false;
+    return position[Dim - 1] <= 0.0;
   }
 
  private:
+  bool is_past_high(const Vec<Dim>& position, int axis) const {
+    return axis < Dim - 1 && position[axis] > size_[axis] - 1e-9 * lattice_.spacing;
+  }
+
   Vec<Dim> size_;
   double fluid_height_;
+  bool mirror_;
   BoxLattice<Dim> lattice_;
 };
 
@@ -105,9 +145,9 @@ class PeriodicBoxGeometry final : public Geometry<Dim> {
 
   Box<Dim> bounds() const override { return {{}, size_}; }
 
-  std::array<bool, Dim> periodic() const override {
-    std::array<bool, Dim> all;
-    all.fill(true);
+  Edges<Dim> edges() const override {
+    Edges<Dim> all;
+    all.fill({Edge::periodic, Edge::periodic});
     return all;
   }
 

@@ -11,6 +11,8 @@ namespace impinge {
 JetGeometry::JetGeometry(const Config& config)
     : jet_(config.jet.width, config.jet.speed, config.fluid.density, config.jet.angle * std::numbers::pi / 180.0),
       start_(config.jet.start),
+      mirror_(config.walls.model == WallModel::mirror),
+      layers_(mirror_ ? 1 : wall_layers),
       spacing_(config.particles.spacing),
       speed_(config.jet.speed),
       plate_begin_(config.plate.begin),
@@ -37,10 +39,10 @@ JetGeometry::JetGeometry(const Config& config)
 
   last_row_ = -(buffer_rows_ - 0.5) * dp;
   next_id_ =
-      wall_columns_ * wall_layers + (buffer_rows_ + column_rows_) * particles_per_row_ + steady_rows_ * wall_columns_;
+      wall_columns_ * layers_ + (buffer_rows_ + column_rows_) * particles_per_row_ + steady_rows_ * wall_columns_;
 
   // Everything the plate, the ghosts and the buffer occupy, and room above for splash.
-  bounds_ = {{{plate_begin_, -wall_layers * dp}}, {{plate_end_, 0.0}}};
+  bounds_ = {{{plate_begin_, mirror_ ? 0.0 : -wall_layers * dp}}, {{plate_end_, 0.0}}};
   for (const double s : {-(buffer_rows_ + 1) * dp, 0.0}) {
     for (const double t : {0.0, width}) {
       for (int k = 0; k < 2; ++k) {
@@ -56,14 +58,14 @@ void JetGeometry::fill(int rank, int ranks, Particles<2>& particles) const {
   const double dp = spacing_;
   std::int64_t first_id = 0;
 
-  for_share(wall_columns_ * wall_layers, rank, ranks, [&](std::int64_t k) {
-    const std::int64_t layer = k % wall_layers;
-    const double x = plate_begin_ + (static_cast<double>(k / wall_layers) + 0.5) * dp;
-    const double y = -(static_cast<double>(layer) + 0.5) * dp;
+  for_share(wall_columns_ * layers_, rank, ranks, [&](std::int64_t k) {
+    const std::int64_t layer = k % layers_;
+    const double x = plate_begin_ + (static_cast<double>(k / layers_) + 0.5) * dp;
+    const double y = mirror_ ? 0.0 : -(static_cast<double>(layer) + 0.5) * dp;
     const ParticleType type = layer == 0 ? ParticleType::wall : ParticleType::ghost;
     particles.append({{{x, y}}, {}, 0.0, 0.0, first_id + k, type});
   });
-  first_id += wall_columns_ * wall_layers;
+  first_id += wall_columns_ * layers_;
 
   for_share((buffer_rows_ + column_rows_) * particles_per_row_, rank, ranks, [&](std::int64_t k) {
     const double s = (static_cast<double>(k / particles_per_row_ - buffer_rows_) + 0.5) * dp;
@@ -133,8 +135,12 @@ BoundaryFlow JetGeometry::move_boundaries(double dt, Particles<2>& particles,
   return flow;
 }
 
-bool JetGeometry::on_floor(const Vec<2>& position) const {
-  return std::abs(position[1] + 0.5 * spacing_) < 0.1 * spacing_;
+std::int64_t JetGeometry::wall_of_ghost(std::int64_t ghost) const { return ghost - ghost % wall_layers; }
+
+Edges<2> JetGeometry::edges() const {
+  Edges<2> edges;
+  if (mirror_) edges[1].low = Edge::mirror;
+  return edges;
 }
 
 }  // namespace impinge

@@ -1,5 +1,6 @@
 #include "impinge/operators.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace impinge {
@@ -10,6 +11,14 @@ template <class Use>
 void for_pairs(const PairList& list, int i, Use&& use) {
   for (int k = list.begin(i); k < list.end(i); ++k)
     use(static_cast<std::size_t>(list.index[static_cast<std::size_t>(k)]), list.weight[static_cast<std::size_t>(k)]);
+}
+
+constexpr double least_determinant = 0.15;
+
+template <int Dim>
+Matrix<Dim> inverse_or(const Matrix<Dim>& moment, const Matrix<Dim>& other) {
+  const double size = determinant(moment);
+  return size < least_determinant ? other : 1.0 / size * adjugate(moment);
 }
 
 // Of a pair's force: along the pair, but along the normal of a wall, which is smooth.
@@ -29,14 +38,25 @@ void number_density(const PairList& near, std::span<double> density) {
 }
 
 template <int Dim>
-double asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i) {
+Vec<Dim> asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i) {
   const Vec<Dim> centre = position[static_cast<std::size_t>(i)];
   Vec<Dim> sum;
   for_pairs(near, i, [&](std::size_t j, double weight) {
     const Vec<Dim> offset = centre - position[j];
     sum += weight / norm(offset) * offset;
   });
-  return Dim / n0 * norm(sum);
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+Matrix<Dim> moment_correction(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i) {
+  const Vec<Dim> centre = position[static_cast<std::size_t>(i)];
+  Matrix<Dim> moment;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vec<Dim> offset = position[j] - centre;
+    moment.add_product(Dim / n0 * weight / dot(offset, offset) * offset, offset);
+  });
+  return inverse_or(moment, Matrix<Dim>::identity());
 }
 
 template <int Dim>
@@ -51,6 +71,76 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
     sum += dot(velocity[j] - own, offset) * weight / dot(offset, offset);
   });
   return Dim / n0 * sum;
+}
+
+template <int Dim>
+double corrected_divergence(const PairList& near, std::span<const Vec<Dim>> position,
+                            std::span<const Vec<Dim>> velocity, std::span<const Vec<Dim>> wall_normal,
+                            const Matrix<Dim>& correction, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vec<Dim> centre = position[self];
+  const Vec<Dim> own = velocity[self];
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vec<Dim> offset = position[j] - centre;
+    Vec<Dim> relative = velocity[j] - own;
+    const Vec<Dim> normal = wall_normal[self] + wall_normal[j];
+    const double square = dot(normal, normal);
+    if (square > 0.0) relative = dot(relative, normal) / square * normal;
+    sum += dot(relative, correction * offset) * weight / dot(offset, offset);
+  });
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+Vec<Dim> corrected_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
+                            const Matrix<Dim>& correction, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vec<Dim> centre = position[self];
+  const double own = pressure[self];
+  Vec<Dim> sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vec<Dim> offset = position[j] - centre;
+    sum += (pressure[j] - own) * weight / dot(offset, offset) * offset;
+  });
+  return Dim / n0 * (correction * sum);
+}
+
+template <int Dim>
+Vec<Dim> velocity_change_along(const PairList& near, std::span<const Vec<Dim>> position,
+                               std::span<const Vec<Dim>> velocity, std::span<const ParticleType> type,
+                               const Vec<Dim>& displacement, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vec<Dim> centre = position[self];
+  const Vec<Dim> own = velocity[self];
+  Matrix<Dim> moment;
+  Matrix<Dim> slope;
+  Vec<Dim> least, most;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
+    const Vec<Dim> offset = position[j] - centre;
+    const Vec<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
+    const Vec<Dim> relative = velocity[j] - own;
+    moment.add_product(weighted, offset);
+    slope.add_product(relative, weighted);
+    for (int k = 0; k < Dim; ++k) {
+      least[k] = std::min(least[k], relative[k]);
+      most[k] = std::max(most[k], relative[k]);
+    }
+  });
+  Vec<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
+  for (int k = 0; k < Dim; ++k) change[k] = std::clamp(change[k], least[k], most[k]);
+  return change;
+}
+
+double weighted_mean(const PairList& near, std::span<const double> value, int i) {
+  double weights = 0.0;
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    weights += weight;
+    sum += weight * value[j];
+  });
+  return weights > 0.0 ? sum / weights : 0.0;
 }
 
 template <int Dim>
@@ -100,8 +190,15 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
 }
 
 #define IMPINGE_INSTANTIATE(Dim)                                                                                       \
-  template double asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                             \
+  template Vec<Dim> asymmetry<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                           \
+  template Matrix<Dim> moment_correction<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                \
   template double divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>, double, int); \
+  template double corrected_divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,     \
+                                            std::span<const Vec<Dim>>, const Matrix<Dim>&, double, int);               \
+  template Vec<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,       \
+                                            const Matrix<Dim>&, double, int);                                          \
+  template Vec<Dim> velocity_change_along<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,  \
+                                               std::span<const ParticleType>, const Vec<Dim>&, double, int);           \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \
                                            std::span<const ParticleType>, std::span<const Vec<Dim>>, double, int);     \
   template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \

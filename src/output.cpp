@@ -15,7 +15,7 @@ constexpr const char* history_columns =
     "step,t,dt,limit,particles,fluid,in,out,lost,kinetic_energy,max_speed,max_pressure,plate_force,iterations,residual,"
     "seconds\n";
 
-const char* name_of(StepLimit limit) { return limit == StepLimit::cfl ? "cfl" : "case"; }
+const char* name_of(StepLimit limit) { return step_limit_names[static_cast<std::size_t>(limit)]; }
 
 struct SeriesField {
   const char* name;

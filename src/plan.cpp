@@ -49,8 +49,10 @@ void count_halo(const CellGrid<Dim>& cells, std::span<const int> owner, const Ce
     for (const auto& target : targets) {
       RankPlan& receiver = plan.ranks[static_cast<std::size_t>(target.rank)];
       receiver.halo += counts.particles[c];
-      receiver.halo_rows += counts.rows[c];
-      if (target.rank != owner[c]) exchanges.emplace_back(target.rank, owner[c]);
+      if (target.rank == owner[c]) continue;
+      receiver.received += counts.particles[c];
+      receiver.received_rows += counts.rows[c];
+      exchanges.emplace_back(target.rank, owner[c]);
     }
   }
   std::sort(exchanges.begin(), exchanges.end());
@@ -64,7 +66,7 @@ void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, P
   std::vector<int> users;
   for (int cell = 0; cell < cells.count(); ++cell) {
     users.assign(1, owner[static_cast<std::size_t>(cell)]);
-    for_cells_around(cells, cell, TwoLevelPreconditioner<Dim>::node_reach, [&](int near, const Vec<Dim>&) {
+    for_cells_around(cells, cell, TwoLevelPreconditioner<Dim>::node_reach, [&](int near, const Image<Dim>&) {
       const int user = owner[static_cast<std::size_t>(near)];
       if (std::find(users.begin(), users.end(), user) != users.end()) return;
       users.push_back(user);
@@ -78,7 +80,7 @@ void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, P
 template <int Dim>
 Plan plan_run(MPI_Comm comm, const Config& config, int ranks) {
   const auto geometry = make_geometry<Dim>(config);
-  const CellGrid<Dim> cells(geometry->bounds(), geometry->periodic(),
+  const CellGrid<Dim> cells(geometry->bounds(), geometry->edges(),
                             config.kernel.laplacian_radius * config.particles.spacing);
   const CellCounts counts = count_particles<Dim>(comm, cells, *geometry);
   // One process partitions: PTScotch waits for ever where three are to make more than three parts.
@@ -103,9 +105,9 @@ Plan plan_run(MPI_Comm comm, const Config& config, int ranks) {
 
   const UnitCosts costs = Simulation<Dim>::unit_costs(config);
   for (RankPlan& rank : plan.ranks) {
-    rank.field_bytes = static_cast<double>(rank.halo) * sizeof(double);
-    rank.step_bytes = static_cast<double>(rank.halo) * costs.halo_traffic;
-    rank.iteration_bytes = static_cast<double>(rank.halo_rows + 2 * rank.node_copies) * sizeof(double);
+    rank.field_bytes = static_cast<double>(rank.received) * sizeof(double);
+    rank.step_bytes = static_cast<double>(rank.received) * costs.halo_traffic;
+    rank.iteration_bytes = static_cast<double>(rank.received_rows + 2 * rank.node_copies) * sizeof(double);
     rank.memory = static_cast<double>(rank.owned + rank.halo) * costs.particle_memory +
                   static_cast<double>(rank.rows) * costs.row_memory +
                   static_cast<double>(plan.cells) * costs.cell_memory;

@@ -78,7 +78,13 @@ void PressureSolver::Block::merge(std::size_t row_begin, std::vector<std::pair<P
   for (std::size_t k = row_begin; k < used; ++k) more.emplace_back(column[k], value[k]);
   std::sort(more.begin(), more.end());
   used = row_begin;
-  for (const auto& [to, entry] : more) append(to, entry);
+  for (const auto& [to, entry] : more) {
+    if (used > row_begin && column[used - 1] == to) {
+      value[used - 1] += entry;
+    } else {
+      append(to, entry);
+    }
+  }
 }
 
 void PressureSolver::Block::end_row() { start.push_back(static_cast<PetscInt>(used)); }
@@ -166,10 +172,11 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
         const int j = equation.far.index[static_cast<std::size_t>(k)];
         const PressureRole role = equation.role[static_cast<std::size_t>(j)];
         if (role == PressureRole::excluded) continue;
+        const PetscInt row = equation.row[static_cast<std::size_t>(j)];
+        if (row == equation.row[self]) continue;  // its own mirror image
         const double weight = equation.far.weight[static_cast<std::size_t>(k)];
         sum += weight;
         if (role == PressureRole::zero) continue;
-        const PetscInt row = equation.row[static_cast<std::size_t>(j)];
         if (j < owned) {
           if (j > i && !placed) place_own();
           diagonal_.append(j, -weight);
@@ -180,13 +187,13 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
         }
       }
       if (!placed) place_own();
+      if (!equation.surface.empty()) sum += equation.surface[self];
       if (sum == 0.0) sum = equation.n0;
       if (pocket_[self] == equation.row[self]) sum += equation.n0;
       diagonal_.value[own_place] = sum;
       diagonal_entries_[self] = sum;
       if (!images.empty()) diagonal_.merge(row_begin, images);
-      std::sort(others.begin(), others.end());
-      for (const auto& [column, value] : others) off_diagonal_.append(column, value);
+      off_diagonal_.merge(off_diagonal_.used, others);
     }
     diagonal_.end_row();
     off_diagonal_.end_row();
@@ -235,6 +242,8 @@ void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& 
   // A particle is anchored if p = 0 is reached from it over unknowns.
   std::vector<std::uint8_t> anchored(equation.role.size(), 0);
   for (std::size_t i = 0; i < anchored.size(); ++i) anchored[i] = equation.role[i] == PressureRole::zero;
+  for (std::size_t i = 0; i < equation.surface.size(); ++i)
+    if (equation.surface[i] > 0.0) anchored[i] = 1;
   spread(comm_, halo, anchored, owned, [&](int i) {
     const auto self = static_cast<std::size_t>(i);
     if (anchored[self] || equation.role[self] != PressureRole::unknown) return false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impinge/lattice.hpp"
 #include "impinge/operators.hpp"
 
 namespace impinge {
@@ -32,15 +33,24 @@ PetscLogStage stage(Phase phase) {
   return stages[phase];
 }
 
-template <int Dim>
+constexpr double splash_density = 0.5;  // n/n0 below which a fluid particle is spray: p = 0, no shifting
+constexpr double first_courant = 0.05;  // of the first step: an impact may be about to change the speeds
+constexpr double most_growth = 1.1;     // of dt from step to step
+constexpr double largest_shift = 0.1;   // of a step [dp]
+
+// Of the background cells: the columns of a wall stand in one cell each.
 double reach_of(const Config& config) {
-  return config.kernel.laplacian_radius * config.particles.spacing;
+  return std::max<double>(config.kernel.laplacian_radius, wall_layers) * config.particles.spacing;
 }
+
+bool is_mirrored(const Config& config) { return config.walls.model == WallModel::mirror; }
+bool has_columns(const Config& config) { return config.walls.model == WallModel::columns; }
 
 // Arrays of one entry per particle.
 template <int Dim>
 constexpr std::size_t particle_bytes = sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t) +
-                                       sizeof(PressureRole) + sizeof(double) + sizeof(Vec<Dim>) + sizeof(PetscInt);
+                                       sizeof(PressureRole) + 2 * sizeof(double) + 4 * sizeof(Vec<Dim>) +
+                                       sizeof(Matrix<Dim>) + sizeof(PetscInt);
 
 bool moves(ParticleType type) { return type == ParticleType::fluid; }
 
@@ -60,10 +70,13 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
       laplacian_factor_(2.0 * Dim /
                         (far_sums_.number_density * far_sums_.lambda * std::pow(config.particles.spacing, 2))),
       geometry_(make_geometry<Dim>(config)),
-      domain_(comm, geometry_->bounds(), geometry_->periodic(), reach_of<Dim>(config), config.parallel.partitioner),
+      domain_(comm, geometry_->bounds(), geometry_->edges(), reach_of(config), config.parallel.partitioner),
       search_(domain_.sorting_cells(), Domain<Dim>::cell_parts, config.kernel.type,
-              config.kernel.radius * config.particles.spacing, reach_of<Dim>(config)),
-      pressure_solver_(comm, config.pressure.tolerance) {
+              config.kernel.radius * config.particles.spacing,
+              config.kernel.laplacian_radius * config.particles.spacing, is_mirrored(config)),
+      pressure_solver_(comm, config.pressure.tolerance),
+      closure_(config.kernel.type, config.kernel.laplacian_radius, 1),
+      column_closure_(config.kernel.type, config.kernel.laplacian_radius, wall_layers) {
   if (pressure_solver_.is_two_level()) two_level_.emplace(comm, domain_.cells());
   for (int k = 0; k < Dim; ++k) gravity_[k] = config.fluid.gravity[static_cast<std::size_t>(k)];
   geometry_->fill(rank_of(comm), ranks_of(comm), particles_);
@@ -88,6 +101,7 @@ void Simulation<Dim>::step() {
   measure_density();
   solve_pressure();
   correct();
+  shift();
   report_.time += report_.dt;
   take_stock();
 }
@@ -101,8 +115,11 @@ void Simulation<Dim>::forget_pressure() {
 template <int Dim>
 void Simulation<Dim>::choose_time_step() {
   const double largest = config_.time.cfl * config_.particles.spacing / report_.max_speed;  // infinite at rest
-  report_.limit = largest < config_.time.dt ? StepLimit::cfl : StepLimit::case_dt;
-  report_.dt = std::min(config_.time.dt, largest);
+  const double grown = report_.dt > 0.0 ? most_growth * report_.dt : first_courant / config_.time.cfl * largest;
+  report_.dt = std::min({config_.time.dt, largest, grown});
+  report_.limit = report_.dt == config_.time.dt ? StepLimit::case_dt
+                  : report_.dt == largest       ? StepLimit::cfl
+                                                : StepLimit::growth;
 }
 
 // u* = u + dt (nu lap u + g), with the pairs of the last step.
@@ -112,7 +129,8 @@ void Simulation<Dim>::accelerate() {
   const double nu = config_.fluid.viscosity;
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), report_.dt * gravity_);
   if (nu > 0.0) {
-    domain_.halo().refresh(particles_.velocity, particles_.owned);
+    domain_.refresh_directions(particles_.velocity, particles_.owned);
+    hold_to_walls();
     for (int i = 0; i < particles_.owned; ++i)
       velocity_change_[static_cast<std::size_t>(i)] +=
           nu * report_.dt * velocity_laplacian<Dim>(search_.far(), particles_.velocity, laplacian_factor_, i);
@@ -121,13 +139,24 @@ void Simulation<Dim>::accelerate() {
     if (moves(particles_.type[i])) particles_.velocity[i] += velocity_change_[i];
 }
 
+// A viscous fluid does not slip: its images move against it.
+template <int Dim>
+void Simulation<Dim>::hold_to_walls() {
+  if (!is_mirrored(config_)) return;
+  for (auto k = static_cast<std::size_t>(particles_.owned); k < particles_.velocity.size(); ++k) {
+    Image<Dim> image;
+    domain_.cells().wrapped(particles_.position[k], image);
+    if (image.reflects()) particles_.velocity[k] = -1.0 * image.of_direction(particles_.velocity[k]);
+  }
+}
+
 // Fluid particles that are about to come too near to each other bounce.
 template <int Dim>
 void Simulation<Dim>::collide() {
   const LogStage log(stage(predicting));
   if (config_.collision.distance == 0.0) return;
   domain_.refresh_positions(particles_);
-  domain_.halo().refresh(particles_.velocity, particles_.owned);
+  domain_.refresh_directions(particles_.velocity, particles_.owned);
   const double distance = config_.collision.distance * config_.particles.spacing;
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});
   for (int i = 0; i < particles_.owned; ++i) {
@@ -174,12 +203,34 @@ void Simulation<Dim>::redistribute() {
   wall_normal_.assign(static_cast<std::size_t>(particles_.size()), {});
   for (std::size_t i = 0; i < wall_normal_.size(); ++i)
     if (particles_.type[i] == ParticleType::wall) wall_normal_[i] = geometry_->wall_normal(particles_.position[i]);
+  if (has_columns(config_)) find_columns();
+}
+
+// The wall particle of each ghost stands in the same background cell, so on this rank.
+template <int Dim>
+void Simulation<Dim>::find_columns() {
+  std::vector<std::pair<std::int64_t, int>> walls;
+  column_.resize(static_cast<std::size_t>(particles_.size()));
+  for (std::size_t i = 0; i < column_.size(); ++i) {
+    column_[i] = static_cast<int>(i);
+    if (particles_.type[i] == ParticleType::wall) walls.emplace_back(particles_.id[i], static_cast<int>(i));
+  }
+  std::sort(walls.begin(), walls.end());
+  for (std::size_t i = 0; i < column_.size(); ++i) {
+    if (particles_.type[i] != ParticleType::ghost) continue;
+    const std::int64_t wall = geometry_->wall_of_ghost(particles_.id[i]);
+    const auto found = std::ranges::lower_bound(walls, wall, {}, &std::pair<std::int64_t, int>::first);
+    if (found == walls.end() || found->first != wall)
+      throw std::logic_error(fmt::format("ghost {} without its wall particle {}", particles_.id[i], wall));
+    column_[i] = found->second;
+    wall_normal_[i] = wall_normal_[static_cast<std::size_t>(found->second)];
+  }
 }
 
 template <int Dim>
 void Simulation<Dim>::find_neighbours() {
   const LogStage log(stage(searching));
-  search_.search(particles_);
+  search_.search(particles_, column_);
 }
 
 template <int Dim>
@@ -188,46 +239,121 @@ void Simulation<Dim>::measure_density() {
   number_density(search_.near(), particles_.number_density);
   const double n0 = near_sums_.number_density;
   const auto& limits = config_.free_surface;
-  role_.assign(static_cast<std::size_t>(particles_.size()), PressureRole::excluded);
+  const auto size = static_cast<std::size_t>(particles_.size());
+  const bool corrects = config_.pressure.corrected_divergence || config_.pressure.corrected_gradient;
+  const bool needs_asymmetry = limits.zero_outside || config_.shifting.coefficient > 0.0;
+  role_.assign(size, PressureRole::excluded);
+  asymmetry_.assign(size, {});
+  correction_.assign(static_cast<std::size_t>(particles_.owned), Matrix<Dim>::identity());
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     const ParticleType type = particles_.type[self];
     particles_.free_surface[self] = 0;
     if (type == ParticleType::inlet) role_[self] = PressureRole::zero;
-    if (type != ParticleType::fluid && type != ParticleType::wall) continue;
+    if (type != ParticleType::fluid && (type != ParticleType::wall || is_mirrored(config_))) continue;
     const double n = particles_.number_density[self];
-    const bool surface =
-        n < limits.surface_density * n0 ||
-        (n <= limits.interior_density * n0 &&
-         asymmetry<Dim>(search_.near(), particles_.position, n0, i) > limits.asymmetry * near_sums_.surface_asymmetry);
+    const bool undecided = n >= limits.surface_density * n0 && n <= limits.interior_density * n0;
+    if (undecided || needs_asymmetry) asymmetry_[self] = asymmetry<Dim>(search_.near(), particles_.position, n0, i);
+    if (corrects && type == ParticleType::fluid)
+      correction_[self] = moment_correction<Dim>(search_.near(), particles_.position, n0, i);
+    const bool surface = n < limits.surface_density * n0 ||
+                         (undecided && norm(asymmetry_[self]) > limits.asymmetry * near_sums_.surface_asymmetry);
     particles_.free_surface[self] = surface;
-    role_[self] = surface ? PressureRole::zero : PressureRole::unknown;
+    const bool zero = limits.zero_outside && type == ParticleType::fluid ? is_splash(self) : surface;
+    role_[self] = zero ? PressureRole::zero : PressureRole::unknown;
+    if (type == ParticleType::wall) asymmetry_[self] = {};  // the free surface is the fluid's
   }
   domain_.halo().refresh(role_, particles_.owned);
+  if (corrects || needs_asymmetry) domain_.halo().refresh(particles_.free_surface, particles_.owned);
+  if (needs_asymmetry) domain_.refresh_directions(asymmetry_, particles_.owned);
+  if (limits.zero_outside) find_surface_weights();
 }
 
-// lap p = (1 - gamma) rho/dt div u* - gamma rho/dt^2 (n* - n0)/n0 (paper eq. 8).
 template <int Dim>
-void Simulation<Dim>::solve_pressure() {
+bool Simulation<Dim>::is_splash(std::size_t i) const {
+  return particles_.number_density[i] < splash_density * near_sums_.number_density;
+}
+
+template <int Dim>
+void Simulation<Dim>::find_surface_weights() {
+  surface_weight_.assign(static_cast<std::size_t>(particles_.owned), 0.0);
+  for (int i = 0; i < particles_.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (role_[self] != PressureRole::unknown) continue;
+    const double depth = surface_depth<Dim>(search_.far(), particles_.position, asymmetry_, particles_.free_surface,
+                                            config_.particles.spacing, i);
+    const bool column = has_columns(config_) && particles_.type[self] == ParticleType::wall;
+    surface_weight_[self] = (column ? column_closure_ : closure_).weight(depth);
+  }
+}
+
+// Gravity acts on an image as on its original, so that its velocity is the mirrored one but for dt g, and a pressure
+// that balances gravity differs by rho g.(r' - r).
+template <int Dim>
+void Simulation<Dim>::weigh_images() {
+  image_pressure_.clear();
+  if (!is_mirrored(config_) || gravity_ == Vec<Dim>{}) return;
+  const auto owned = static_cast<std::size_t>(particles_.owned);
+  image_pressure_.assign(particles_.position.size() - owned, 0.0);
+  for (std::size_t k = 0; k < image_pressure_.size(); ++k) {
+    Image<Dim> image;
+    const Vec<Dim>& position = particles_.position[owned + k];
+    const Vec<Dim> original = domain_.cells().wrapped(position, image);
+    if (!image.reflects()) continue;
+    image_pressure_[k] = config_.fluid.density * dot(gravity_, position - original);
+    particles_.velocity[owned + k] += report_.dt * (gravity_ - image.of_direction(gravity_));
+  }
+}
+
+// (1 - gamma) rho/dt div u* - gamma rho/dt^2 (n* - n0)/n0 (paper eq. 8), for a column the sum over its particles, less
+// the flux that the images' weight makes.
+template <int Dim>
+void Simulation<Dim>::find_sources() {
   const double n0 = near_sums_.number_density;
-  const double gamma = config_.pressure.gamma;
   const double rho = config_.fluid.density;
   const double dt = report_.dt;
+  const double speed = config_.pressure.density_speed * report_.max_speed;
+  const double gamma = config_.pressure.density_speed > 0.0
+                           ? std::min(1.0, std::pow(speed * dt / config_.particles.spacing, 2))
+                           : config_.pressure.gamma;
+  source_.assign(static_cast<std::size_t>(particles_.owned), 0.0);
+  for (int i = 0; i < particles_.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    const bool ghost = particles_.type[self] == ParticleType::ghost;
+    const std::size_t unknown = column_.empty() ? self : static_cast<std::size_t>(column_[self]);
+    if (role_[self] != PressureRole::unknown) particles_.pressure[self] = 0.0;
+    if (role_[unknown] != PressureRole::unknown) continue;
+    const double flow = config_.pressure.corrected_divergence
+                            ? corrected_divergence<Dim>(search_.near(), particles_.position, particles_.velocity,
+                                                        wall_normal_, correction_[self], n0, i)
+                            : divergence<Dim>(search_.near(), particles_.position, particles_.velocity, n0, i);
+    // Ghosts and the free surface miss neighbours: their number density says nothing of crowding.
+    const double crowding = ghost || particles_.free_surface[self] ? 0.0 : (particles_.number_density[self] - n0) / n0;
+    source_[unknown] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
+  }
+  if (image_pressure_.empty()) return;
+  const PairList& far = search_.far();
+  for (int i = 0; i < particles_.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (role_[self] != PressureRole::unknown) continue;
+    for (int k = far.begin(i); k < far.end(i); ++k) {
+      const int image = far.index[static_cast<std::size_t>(k)] - particles_.owned;
+      if (image < 0) continue;
+      source_[self] -= laplacian_factor_ * far.weight[static_cast<std::size_t>(k)] *
+                       image_pressure_[static_cast<std::size_t>(image)];
+    }
+  }
+}
+
+// lap p = source.
+template <int Dim>
+void Simulation<Dim>::solve_pressure() {
   {
     const LogStage log(stage(assembling));
-    source_.assign(static_cast<std::size_t>(particles_.owned), 0.0);
-    for (int i = 0; i < particles_.owned; ++i) {
-      const auto self = static_cast<std::size_t>(i);
-      if (role_[self] != PressureRole::unknown) {
-        particles_.pressure[self] = 0.0;
-        continue;
-      }
-      const double flow = divergence<Dim>(search_.near(), particles_.position, particles_.velocity, n0, i);
-      const double crowding = (particles_.number_density[self] - n0) / n0;
-      source_[self] = (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
-    }
-    const PressureEquation equation{search_.far(),           role_, domain_.rows(), source_, laplacian_factor_,
-                                    far_sums_.number_density};
+    weigh_images();
+    find_sources();
+    const PressureEquation equation{
+        search_.far(), role_, domain_.rows(), source_, laplacian_factor_, far_sums_.number_density, surface_weight_};
     pressure_solver_.assemble(equation, domain_.halo());
     if (two_level_) {
       const LogStage log_set_up(stage(preconditioning));
@@ -245,25 +371,82 @@ void Simulation<Dim>::solve_pressure() {
       double& pressure = particles_.pressure[static_cast<std::size_t>(i)];
       pressure = std::max(pressure, 0.0);
     }
-  domain_.halo().refresh(particles_.pressure, particles_.owned);
+  share_wall_pressure();
 }
 
-// u = u* - dt/rho grad p, r = r* - dt^2/rho grad p.
+// Ghosts of a column take its pressure; the wall particles of a mirror measure the mean around them.
+template <int Dim>
+void Simulation<Dim>::share_wall_pressure() {
+  auto& pressure = particles_.pressure;
+  for (std::size_t i = 0; i < std::min(column_.size(), static_cast<std::size_t>(particles_.owned)); ++i)
+    pressure[i] = pressure[static_cast<std::size_t>(column_[i])];
+  domain_.halo().refresh(pressure, particles_.owned);
+  for (std::size_t k = 0; k < image_pressure_.size(); ++k)
+    pressure[static_cast<std::size_t>(particles_.owned) + k] += image_pressure_[k];
+  for (int i = 0; is_mirrored(config_) && i < particles_.owned; ++i)
+    if (particles_.type[static_cast<std::size_t>(i)] == ParticleType::wall)
+      pressure[static_cast<std::size_t>(i)] = weighted_mean(search_.near(), pressure, i);
+}
+
+// u = u* - dt/rho grad p.
 template <int Dim>
 void Simulation<Dim>::correct() {
   const LogStage log(stage(correcting));
   const double factor = report_.dt / config_.fluid.density;
+  const double n0 = near_sums_.number_density;
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
-    if (moves(particles_.type[self]))
-      velocity_change_[self] =
-          -factor * pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure, particles_.type,
-                                           wall_normal_, near_sums_.number_density, i);
+    if (!moves(particles_.type[self])) continue;
+    // Near the surface differences of pressure leave the forces of a pair unequal, and the surface breaks up.
+    const bool corrected = config_.pressure.corrected_gradient && !is_near_surface(i);
+    velocity_change_[self] =
+        -factor * (corrected ? corrected_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
+                                                       correction_[self], n0, i)
+                             : pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
+                                                      particles_.type, wall_normal_, n0, i));
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
+    particles_.velocity[i] += velocity_change_[i];
+}
+
+template <int Dim>
+bool Simulation<Dim>::is_near_surface(int i) const {
+  const PairList& near = search_.near();
+  if (particles_.free_surface[static_cast<std::size_t>(i)]) return true;
+  for (int k = near.begin(i); k < near.end(i); ++k)
+    if (particles_.free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])]) return true;
+  return false;
+}
+
+// r = r* + dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C (u_max dt/dp) dp F, but not
+// through the free surface, and take the velocity of their new place.
+template <int Dim>
+void Simulation<Dim>::shift() {
+  const LogStage log(stage(correcting));
+  const double largest = largest_shift * config_.particles.spacing;
+  const double scale = config_.shifting.coefficient * report_.max_speed * report_.dt;
+  const bool corrects = scale > 0.0 && config_.shifting.correct_velocity;
+  if (corrects) domain_.refresh_directions(particles_.velocity, particles_.owned);
+  displacement_.resize(static_cast<std::size_t>(particles_.owned));
+  for (int i = 0; i < particles_.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    Vec<Dim>& change = velocity_change_[self];
+    displacement_[self] = report_.dt * change;
+    change = {};
+    if (scale == 0.0 || !moves(particles_.type[self]) || is_splash(self)) continue;
+    const Vec<Dim> normal = surface_normal<Dim>(search_.near(), asymmetry_, particles_.free_surface, i);
+    Vec<Dim> delta = scale * asymmetry_[self];
+    delta -= dot(delta, normal) * normal;
+    if (const double length = norm(delta); length > largest) delta *= largest / length;
+    displacement_[self] += delta;
+    if (corrects)
+      change = velocity_change_along<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
+                                          delta, near_sums_.number_density, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
+    particles_.position[i] += displacement_[i];
     particles_.velocity[i] += velocity_change_[i];
-    particles_.position[i] += report_.dt * velocity_change_[i];
   }
 }
 

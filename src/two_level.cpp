@@ -7,8 +7,10 @@
 namespace impinge {
 namespace {
 
+constexpr const char* smoother_option = "-ppe_coarse_pc_hypre_boomeramg_relax_type_all";
 constexpr double jacobi_weight = 1.5;
 constexpr double least_node_weight = 0.05;  // a node with less interpolation weight is left out
+constexpr double regularisation = 1e-9;     // of A_c's diagonal: few particles may leave P without full rank
 constexpr int oldest = 10;                  // solves with one coarse matrix
 constexpr double most_growth = 1.3;         // of the iterations
 
@@ -58,7 +60,12 @@ void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
   PC preconditioner;
   check(KSPGetPC(coarse_solver_, &preconditioner));
   check(PCSetType(preconditioner, PCHYPRE));
+  // BoomerAMG's own smoother, Jacobi between ranks, is indefinite where few particles tie nodes of two ranks together.
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, smoother_option, &given));
+  if (!given) check(PetscOptionsSetValue(nullptr, smoother_option, "l1scaled-SOR/Jacobi"));
   check(KSPSetFromOptions(coarse_solver_));
+  if (!given) check(PetscOptionsClearValue(nullptr, smoother_option));
 }
 
 template <int Dim>
@@ -75,7 +82,7 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
   std::vector<PetscSFNode> remote;
   for (std::size_t cell = 0; cell < owner.size(); ++cell) {
     if (owner[cell] != self) continue;
-    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Vec<Dim>&) {
+    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Image<Dim>&) {
       if (node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
       node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
       cell_of_node_.push_back(near);
@@ -94,8 +101,8 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
 
 template <int Dim>
 int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordinates) const {
-  Vec<Dim> shift;
-  const int cell = cells_.wrapped_cell(coordinates, shift);
+  Image<Dim> image;
+  const int cell = cells_.wrapped_cell(coordinates, image);
   return cell < 0 ? -1 : node_of_cell_[static_cast<std::size_t>(cell)];
 }
 
@@ -103,11 +110,11 @@ template <int Dim>
 typename TwoLevelPreconditioner<Dim>::Place TwoLevelPreconditioner<Dim>::place(const Vec<Dim>& position) const {
   Place result;
   Vec<Dim> upper;  // weight of base + 1
-  const Vec<Dim> in_edges = cells_.in_edges(position);
+  const Vec<Dim> in_edges = cells_.in_edges(cells_.unmirrored(position));
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     double at = in_edges[k] - 0.5;
-    if (!cells_.periodic()[axis]) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
+    if (cells_.edges()[axis].low != Edge::periodic) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
     const double base = std::floor(at);
     result.base[axis] = static_cast<int>(base);
     upper[k] = at - base;
@@ -198,7 +205,8 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& eq
     add(self, diagonal_[self]);
     for (int k = equation.far.begin(i); k < equation.far.end(i); ++k) {
       const auto j = static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]);
-      if (equation.role[j] == PressureRole::unknown) add(j, -equation.far.weight[static_cast<std::size_t>(k)]);
+      if (equation.role[j] == PressureRole::unknown && equation.row[j] != equation.row[self])
+        add(j, -equation.far.weight[static_cast<std::size_t>(k)]);
     }
     for (std::size_t c = 0; c < corners; ++c) {
       const int node = node_[self * corners + c];
@@ -219,6 +227,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& eq
     const auto centre = cells_.coordinates(cell_of_node_[node]);
     columns.clear();
     values.clear();
+    stencil[node * stencil_size + stencil_size / 2] *= 1.0 + regularisation;
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
       const double value = stencil[node * stencil_size + static_cast<std::size_t>(k)];
       if (value == 0.0) return;

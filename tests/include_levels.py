@@ -15,7 +15,7 @@ LEVELS = [
     ["config"],
     ["cell_grid", "partition"],
     ["domain", "geometry", "jet_geometry", "neighbours"],
-    ["operators", "pressure", "snapshot"],
+    ["free_surface", "operators", "pressure", "snapshot"],
     ["two_level"],
     ["simulation"],
     ["output", "plan", "progress"],

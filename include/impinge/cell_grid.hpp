@@ -7,12 +7,23 @@
 
 namespace impinge {
 
-/// Cells over a box. Along a periodic axis the cells divide the period exactly; along another the box grows at its high
-/// end to a whole number of cells.
+/// What is beyond an end of a box: nothing, the other end, or the mirror image.
+enum class Edge { open, periodic, mirror };
+
+/// The ends of each axis; both are periodic or none.
+struct AxisEdges {
+  Edge low = Edge::open;
+  Edge high = Edge::open;
+};
+
+template <int Dim>
+using Edges = std::array<AxisEdges, Dim>;
+
+/// Equal cells that divide a box along each axis.
 template <int Dim>
 class CellGrid {
  public:
-  CellGrid(const Box<Dim>& box, const std::array<bool, Dim>& periodic, double smallest_edge);
+  CellGrid(const Box<Dim>& box, const Edges<Dim>& edges, double smallest_edge);
 
   /// The same box with every cell cut into `parts` along each axis.
   CellGrid refined(int parts) const;
@@ -30,25 +41,33 @@ class CellGrid {
 
   std::array<int, Dim> coordinates(int cell) const;
 
-  /// Cell at integer coordinates, wrapped along periodic axes; -1 outside. `shift` [m] is what a particle of the cell
-  /// next door has to move by to appear beside the cell (zero unless wrapped).
-  int wrapped_cell(std::array<int, Dim> coordinates, Vec<Dim>& shift) const;
+  /// Cell at integer coordinates, beyond periodic and mirror ends that of which the images stand there; -1 outside.
+  /// `image` is what makes a particle of the cell next door appear beside the cell.
+  int wrapped_cell(std::array<int, Dim> coordinates, Image<Dim>& image) const;
 
-  /// The position inside the period.
-  Vec<Dim> wrapped(Vec<Dim> position) const;
+  /// The position inside the period and on this side of the mirrors, by up to one image along each axis; `image`
+  /// receives the reflection, without the shifts by periods.
+  Vec<Dim> wrapped(Vec<Dim> position, Image<Dim>& image) const;
+  Vec<Dim> wrapped(const Vec<Dim>& position) const {
+    Image<Dim> image;
+    return wrapped(position, image);
+  }
+
+  /// The original of a mirror image beyond the box; other positions as they are.
+  Vec<Dim> unmirrored(Vec<Dim> position) const;
 
   const std::array<int, Dim>& extent() const { return extent_; }
-  const std::array<bool, Dim>& periodic() const { return periodic_; }
+  const Edges<Dim>& edges() const { return edges_; }
 
  private:
   Vec<Dim> low_;
   Vec<Dim> edge_;
   std::array<int, Dim> extent_;
-  std::array<bool, Dim> periodic_;
+  Edges<Dim> edges_;
 };
 
-/// Calls use(cell, shift) for the cells up to `reach` cells away from `cell` along every axis, itself included, in a
-/// fixed order; shift [m]: see wrapped_cell.
+/// Calls use(cell, image) for the cells up to `reach` cells away from `cell` along every axis, itself included, in a
+/// fixed order; image: see wrapped_cell.
 template <int Dim, class Use>
 void for_cells_around(const CellGrid<Dim>& cells, int cell, int reach, Use&& use) {
   const auto centre = cells.coordinates(cell);
@@ -61,9 +80,9 @@ void for_cells_around(const CellGrid<Dim>& cells, int cell, int reach, Use&& use
       coordinate += rest % span - reach;
       rest /= span;
     }
-    Vec<Dim> shift;
-    const int near = cells.wrapped_cell(at, shift);
-    if (near >= 0) use(near, shift);
+    Image<Dim> image;
+    const int near = cells.wrapped_cell(at, image);
+    if (near >= 0) use(near, image);
   }
 }
 

@@ -11,6 +11,8 @@
 
 namespace impinge {
 
+enum class Scheme { consistent, paper };
+enum class WallModel { mirror, columns, particles };
 enum class GeometryType { jet, tank, periodic_box };
 enum class JetStart { impact, steady };
 enum class Partitioner { metis, ptscotch };
@@ -20,6 +22,7 @@ struct Config {
   std::string name;  ///< default: the case file's stem
   GeometryType geometry = GeometryType::jet;
   int dimension = 2;
+  Scheme scheme = Scheme::consistent;  ///< sets the defaults that are said to be "by scheme"
 
   struct {
     double density = 1000.0;  ///< [kg/m^3]
@@ -38,21 +41,34 @@ struct Config {
   } kernel;
 
   struct {
-    double gamma = 0.01;         ///< weight of the density term in the PPE source
-    double tolerance = 1e-6;     ///< relative residual of the PPE solve
-    bool clamp_negative = true;  ///< set negative pressures to zero after the solve
+    double gamma = 0.01;                ///< weight of the density term in the PPE source, unless density_speed is set
+    double density_speed = 0.0;         ///< speed at which a density error is corrected [largest speed]; by scheme
+    bool corrected_divergence = false;  ///< divergence exact on linear velocities; by scheme
+    bool corrected_gradient = false;    ///< gradient exact on linear pressures, but at the surface; by scheme
+    double tolerance = 1e-6;            ///< relative residual of the PPE solve
+    bool clamp_negative = true;         ///< set negative pressures to zero after the solve
   } pressure;
+
+  struct {
+    WallModel model = WallModel::particles;  ///< by scheme
+  } walls;
 
   struct {
     double surface_density = 0.8;    ///< n/n0 below which a particle is free surface
     double interior_density = 0.97;  ///< n/n0 above which it is not
     double asymmetry = 0.9;          ///< between the two: surface if |F| > asymmetry |F|0
+    bool zero_outside = false;       ///< p = 0 half a spacing outside the surface particles, not at them; by scheme
   } free_surface;
 
   struct {
-    double distance = 0.8;     ///< [dp]; 0 switches collisions off
+    double distance = 0.8;     ///< [dp]; 0 switches collisions off; by scheme
     double restitution = 0.2;  ///< [-]
   } collision;
+
+  struct {
+    double coefficient = 0.0;       ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
+    bool correct_velocity = false;  ///< take the velocity of the new place; by scheme
+  } shifting;
 
   struct {
     double end = 0.0;        ///< [s], required

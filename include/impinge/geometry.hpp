@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "impinge/cell_grid.hpp"
 #include "impinge/config.hpp"
 #include "impinge/particles.hpp"
 
@@ -15,8 +16,9 @@ struct BoundaryFlow {
   std::int64_t left = 0;
 };
 
-/// The scene of a case. Walls: the surface of a wall lies half a spacing in front of its row of wall particles; ghost
-/// rows stand behind it.
+/// The scene of a case. Walls of particles: the surface lies half a spacing in front of the row of wall particles, and
+/// ghost rows stand behind it. Mirror walls: the surface is an edge of the bounds, and wall particles on it measure the
+/// pressure.
 template <int Dim>
 class Geometry {
  public:
@@ -25,7 +27,8 @@ class Geometry {
   /// The region that particles may occupy [m]; one outside it is lost.
   virtual Box<Dim> bounds() const = 0;
 
-  virtual std::array<bool, Dim> periodic() const { return {}; }
+  /// What is beyond the bounds.
+  virtual Edges<Dim> edges() const { return {}; }
 
   /// Appends this rank's share of the initial particles, anywhere in space; the shares of all ranks make the whole, the
   /// same for every number of ranks.
@@ -44,6 +47,9 @@ class Geometry {
 
   /// Unit normal of the wall, into the fluid, at one of its wall particles [-]; between the walls' normals in a corner.
   virtual Vec<Dim> wall_normal(const Vec<Dim>& /*position*/) const { return {}; }
+
+  /// Id of the wall particle in front of a ghost particle.
+  virtual std::int64_t wall_of_ghost(std::int64_t ghost) const { return ghost; }
 
   /// True for a wall particle of the plate or floor, whose force the history gives.
   virtual bool on_floor(const Vec<Dim>& /*position*/) const { return false; }

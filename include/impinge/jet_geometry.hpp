@@ -13,12 +13,14 @@ class JetGeometry final : public Geometry<2> {
   explicit JetGeometry(const Config& config);
 
   Box<2> bounds() const override { return bounds_; }
+  Edges<2> edges() const override;
   void fill(int rank, int ranks, Particles<2>& particles) const override;
   Vec<2> inlet_velocity() const override { return speed_ * along_; }
   BoundaryFlow move_boundaries(double dt, Particles<2>& particles,
                                const std::function<bool(const Vec<2>&)>& owns) override;
   Vec<2> wall_normal(const Vec<2>&) const override { return {{0.0, 1.0}}; }
-  bool on_floor(const Vec<2>& position) const override;
+  std::int64_t wall_of_ghost(std::int64_t ghost) const override;
+  bool on_floor(const Vec<2>&) const override { return true; }
 
  private:
   Vec<2> at(double s, double t) const { return inlet_corner_ + s * along_ + t * across_; }
@@ -28,6 +30,8 @@ class JetGeometry final : public Geometry<2> {
 
   AnalyticJet jet_;
   JetStart start_;
+  bool mirror_;  // the plate is a mirror
+  int layers_;   // rows of the plate's particles
   double spacing_;
   double speed_;
   Vec<2> along_;         // unit vector of the incoming flow

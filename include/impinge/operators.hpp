@@ -13,14 +13,28 @@ namespace impinge {
 /// Particle number density n_i = sum_{j != i} W(r_ij) [-] (Koshizuka & Oka 1996).
 void number_density(const PairList& near, std::span<double> density);
 
-/// |F_i| with F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-]: large where neighbours are on one side only (Zhang & Wan 2012).
+/// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &
+/// Wan 2012).
 template <int Dim>
-double asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i);
+Vec<Dim> asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i);
+
+/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice;
+/// where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface), L_i is the identity, too.
+template <int Dim>
+Matrix<Dim> moment_correction(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i);
 
 /// Divergence Dim/n0 sum (u_j - u_i).r_ij W / r_ij^2 [1/s] (paper eq. 5).
 template <int Dim>
 double divergence(const PairList& near, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity,
                   double n0, int i);
+
+/// Corrected divergence Dim/n0 sum (u_j - u_i).L_i r_ij W / r_ij^2 [1/s], exact on linear velocities. Walls let the
+/// fluid slip: of a pair with a wall, whose normal `wall_normal` has for its particles and ghosts and which is zero
+/// elsewhere, only the relative velocity along the normal counts.
+template <int Dim>
+double corrected_divergence(const PairList& near, std::span<const Vec<Dim>> position,
+                            std::span<const Vec<Dim>> velocity, std::span<const Vec<Dim>> wall_normal,
+                            const Matrix<Dim>& correction, double n0, int i);
 
 /// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
 /// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
@@ -28,6 +42,22 @@ double divergence(const PairList& near, std::span<const Vec<Dim>> position, std:
 template <int Dim>
 Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
                            std::span<const ParticleType> type, std::span<const Vec<Dim>> wall_normal, double n0, int i);
+
+/// Corrected pressure gradient Dim/n0 L_i sum (p_j - p_i) r_ij W / r_ij^2 [Pa/m], exact on linear pressures.
+template <int Dim>
+Vec<Dim> corrected_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
+                            const Matrix<Dim>& correction, double n0, int i);
+
+/// Change of velocity over a displacement, (delta . grad) u [m/s], from the neighbours that are no wall; exact on
+/// linear velocities, zero where the neighbours are too few. No component of the new velocity leaves the range of the
+/// neighbours' and its own: in spray an extrapolation would feed on itself.
+template <int Dim>
+Vec<Dim> velocity_change_along(const PairList& near, std::span<const Vec<Dim>> position,
+                               std::span<const Vec<Dim>> velocity, std::span<const ParticleType> type,
+                               const Vec<Dim>& displacement, double n0, int i);
+
+/// Mean of the neighbours' values by their weights; 0 without a neighbour.
+double weighted_mean(const PairList& near, std::span<const double> value, int i);
 
 /// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
 /// `factor` = 2 Dim/(n0 lambda) [1/m^2].

@@ -28,6 +28,7 @@ struct PressureEquation {
   std::span<const double> source;      ///< [Pa/m^2], owned
   double factor;                       ///< 2 Dim/(n0 lambda) [1/m^2]
   double n0;                           ///< full lattice's sum of weights [-]
+  std::span<const double> surface{};   ///< weight of p = 0 beyond the surface, owned [-]; or none
 };
 
 struct PressureReport {
@@ -38,9 +39,9 @@ struct PressureReport {
 };
 
 /// Builds the matrix of each step and solves it with a KSP of options prefix `ppe_`. The system is divided by -factor:
-/// A_ij = -W_ij, A_ii = sum_j W_ij over unknown and p = 0 neighbours, b_i = -source_i/factor; rows without an unknown
-/// are n0 p_i = 0. Symmetric, and positive definite: in a cluster that touches no p = 0 particle the source's mean is
-/// removed, one particle is pinned, and the pressure's lowest value is set to 0.
+/// A_ij = -W_ij, A_ii = sum_j W_ij over unknown and p = 0 neighbours, and the surface's weight, b_i = -source_i/factor;
+/// rows without an unknown are n0 p_i = 0. Symmetric, and positive definite: in a cluster that touches no p = 0
+/// particle the source's mean is removed, one particle is pinned, and the pressure's lowest value is set to 0.
 class PressureSolver {
  public:
   /// The default preconditioner, a shell that the owner of this object fills before each solve.

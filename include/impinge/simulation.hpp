@@ -9,6 +9,7 @@
 
 #include "impinge/config.hpp"
 #include "impinge/domain.hpp"
+#include "impinge/free_surface.hpp"
 #include "impinge/geometry.hpp"
 #include "impinge/neighbours.hpp"
 #include "impinge/pressure.hpp"
@@ -33,7 +34,8 @@ inline constexpr std::array phase_names{"Predict",    "Redistribute", "Neighbour
                                         "PPE set-up", "PPE solve",    "Correct",    "Stocktaking"};
 
 /// What bounds the time step.
-enum class StepLimit { case_dt, cfl };
+enum class StepLimit { case_dt, cfl, growth };
+inline constexpr std::array step_limit_names{"case", "CFL", "growth"};
 
 /// Totals over all ranks after a step.
 struct StepReport {
@@ -107,7 +109,17 @@ class Simulation {
   void measure_density();
   void solve_pressure();
   void correct();
+  void shift();
   void take_stock();
+
+  void hold_to_walls();
+  void find_columns();
+  void find_surface_weights();
+  void weigh_images();
+  void find_sources();
+  void share_wall_pressure();
+  bool is_near_surface(int i) const;
+  bool is_splash(std::size_t i) const;
 
   [[noreturn]] void fail(const char* phase, const std::string& reason) const;
 
@@ -127,10 +139,18 @@ class Simulation {
   StepReport report_;
   double window_begin_ = 0.0;
   double window_end_ = 0.0;
-  std::vector<Vec<Dim>> wall_normal_;  // zero but at wall particles
+  SurfaceClosure<Dim> closure_;          // of a particle's Laplacian
+  SurfaceClosure<Dim> column_closure_;   // of a wall column's
+  std::vector<Vec<Dim>> wall_normal_;    // zero but at wall particles and, in columns, their ghosts
+  std::vector<int> column_;              // particle whose pressure a particle has; empty: each has its own
+  std::vector<Vec<Dim>> asymmetry_;      // F_i; owned and halo
+  std::vector<Matrix<Dim>> correction_;  // L_i, owned
   std::vector<PressureRole> role_;
+  std::vector<double> image_pressure_;  // of a halo particle over that of its original [Pa]; empty: none
+  std::vector<double> surface_weight_;  // empty: p = 0 at the surface particles
   std::vector<double> source_;
   std::vector<Vec<Dim>> velocity_change_;
+  std::vector<Vec<Dim>> displacement_;
 };
 
 }  // namespace impinge

@@ -78,7 +78,8 @@ class Run:
         parameters, report = self.report["parameters"], self.report
         return (
             f"{report['case']}: {parameters['angle']:g}°, $H/d_p$ = {parameters['width_over_spacing']:g}, "
-            f"$\\gamma$ = {parameters['gamma']:g}, t = {report['time']:.3f} s"
+            + (f"paper's scheme, $\\gamma$ = {parameters['gamma']:g}" if parameters["scheme"] == "paper" else "consistent scheme")
+            + f", t = {report['time']:.3f} s"
             + (f" ({report['status']})" if report["status"] != "finished" else "")
         )
 

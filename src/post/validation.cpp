@@ -218,6 +218,7 @@ std::string to_json(const Validation& validation) {
                           {"density", config.fluid.density},
                           {"spacing", config.particles.spacing},
                           {"width_over_spacing", config.jet.width / config.particles.spacing},
+                          {"scheme", config.scheme == Scheme::paper ? "paper" : "consistent"},
                           {"gamma", config.pressure.gamma},
                           {"kernel", config.kernel.type == KernelType::singular ? "singular" : "non_singular"},
                           {"plate_begin", config.plate.begin},
@@ -239,11 +240,17 @@ std::string to_json(const Validation& validation) {
   return report.dump(2) + "\n";
 }
 
+/// The scheme, and what the paper varies in it.
+std::string scheme_text(const Config& config) {
+  return config.scheme == Scheme::paper ? fmt::format("paper's scheme, gamma = {}", config.pressure.gamma)
+                                        : "consistent scheme";
+}
+
 std::string to_table(const Validation& validation) {
   const Config& config = validation.config;
   const SnapshotHeader& last = validation.last;
-  std::string table = fmt::format("case       {}: {} deg, H/dp = {:.4g}, gamma = {}, kernel {}\n", config.name,
-                                  config.jet.angle, config.jet.width / config.particles.spacing, config.pressure.gamma,
+  std::string table = fmt::format("case       {}: {} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
+                                  config.jet.angle, config.jet.width / config.particles.spacing, scheme_text(config),
                                   config.kernel.type == KernelType::singular ? "singular" : "non-singular");
   table += fmt::format("run        {} at t = {:.6g} s, step {}\n", last.status, last.time, last.step);
   if (!last.message.empty()) table += fmt::format("           {}\n", last.message);

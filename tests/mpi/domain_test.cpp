@@ -55,19 +55,36 @@ Particles<Dim> settled_share(Domain<Dim>& domain, const Particles<Dim>& all, MPI
 }
 
 template <int Dim>
-Domain<Dim> make_domain(bool periodic, Partitioner partitioner = Partitioner::metis, MPI_Comm of = comm) {
+Domain<Dim> make_domain(Edge edge, Partitioner partitioner = Partitioner::metis, MPI_Comm of = comm) {
   Box<Dim> box;
   for (int k = 0; k < Dim; ++k) box.high[k] = extent<Dim>()[static_cast<std::size_t>(k)];
-  std::array<bool, Dim> axes;
-  axes.fill(periodic);
-  return {of, box, axes, far_radius, partitioner};
+  Edges<Dim> edges;
+  edges.fill({edge, edge});
+  return {of, box, edges, far_radius, partitioner};
+}
+
+/// Calls use(position) for a position and its images next to the box, those at edges and corners among them.
+template <int Dim, class Use>
+void for_images(Edge edge, const Vec<Dim>& position, Use&& use) {
+  for (int code = 0; code < (Dim == 2 ? 9 : 27); ++code) {
+    Vec<Dim> image = position;
+    int rest = code;
+    for (int k = 0; k < Dim; ++k, rest /= 3) {
+      const double length = extent<Dim>()[static_cast<std::size_t>(k)];
+      const int side = rest % 3 - 1;
+      if (side == 0) continue;
+      image[k] = edge == Edge::periodic ? position[k] + side * length : (side < 0 ? 0.0 : 2.0 * length) - position[k];
+    }
+    if (code == (Dim == 2 ? 4 : 13) || edge != Edge::open) use(image);
+  }
 }
 
 /// Number densities of the owned particles, for both radii.
 template <int Dim>
 std::array<std::vector<double>, 2> densities(const Domain<Dim>& domain, const Particles<Dim>& particles) {
+  const bool mirrored = domain.cells().edges()[0].low == Edge::mirror;
   NeighbourSearch<Dim> search(domain.sorting_cells(), Domain<Dim>::cell_parts, KernelType::non_singular, near_radius,
-                              far_radius);
+                              far_radius, mirrored);
   search.search(particles);
   std::array<std::vector<double>, 2> density;
   for (auto& values : density) values.resize(static_cast<std::size_t>(particles.owned));
@@ -96,17 +113,17 @@ void expect_sorted(const Domain<Dim>& domain, const Particles<Dim>& particles) {
   }
 }
 
-/// Every variant: periodic or not, each partitioner.
+/// Every variant: all kinds of edges, each partitioner.
 template <class Dimension>
 class Domains : public testing::Test {
  protected:
   template <class Use>
   static void for_variants(Use&& use) {
-    for (const bool periodic : {false, true}) {
+    for (const Edge edge : {Edge::open, Edge::periodic, Edge::mirror}) {
       for (const Partitioner partitioner : {Partitioner::metis, Partitioner::ptscotch}) {
-        SCOPED_TRACE(testing::Message() << (periodic ? "periodic" : "not periodic") << ", partitioner "
+        SCOPED_TRACE(testing::Message() << "edge " << static_cast<int>(edge) << ", partitioner "
                                         << static_cast<int>(partitioner));
-        use(periodic, partitioner);
+        use(edge, partitioner);
       }
     }
   }
@@ -115,9 +132,9 @@ TYPED_TEST_SUITE(Domains, Dimensions);
 
 TYPED_TEST(Domains, MigrationKeepsEveryParticleWithItsFields) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
-    auto domain = make_domain<Dim>(periodic, partitioner);
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> particles = share_of(all);
     domain.partition(particles);
     EXPECT_EQ(domain.migrate(particles), 0);
@@ -134,9 +151,9 @@ TYPED_TEST(Domains, MigrationKeepsEveryParticleWithItsFields) {
 
 TYPED_TEST(Domains, PartitionBalancesTheWork) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> all = make_cloud<Dim>(extent<Dim>(), 0.2);
-    auto domain = make_domain<Dim>(periodic, partitioner);
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> particles;
     if (rank_of(comm) == 0) particles = all;
     EXPECT_EQ(domain.imbalance(particles), ranks_of(comm));
@@ -150,10 +167,10 @@ TYPED_TEST(Domains, PartitionBalancesTheWork) {
 
 TYPED_TEST(Domains, DensitiesAreBitwiseThoseOfASingleRank) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
     const auto measure = [&](MPI_Comm of) {
-      auto domain = make_domain<Dim>(periodic, partitioner, of);
+      auto domain = make_domain<Dim>(edge, partitioner, of);
       Particles<Dim> particles = settled_share(domain, all, of);
       const auto density = densities(domain, particles);
       return std::array{gather_by_id(of, particles, density[0]), gather_by_id(of, particles, density[1])};
@@ -164,23 +181,23 @@ TYPED_TEST(Domains, DensitiesAreBitwiseThoseOfASingleRank) {
 
 TYPED_TEST(Domains, HaloCompletesTheDensityOfBruteForce) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
-    auto domain = make_domain<Dim>(periodic, partitioner);
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> particles = settled_share(domain, all);
     const auto density = densities(domain, particles);
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
       double near = 0.0, far = 0.0;
-      const ParticleType type = particles.type[i];
-      for (int j = 0; j < all.owned && (type == ParticleType::fluid || type == ParticleType::wall); ++j) {
-        if (particles.id[i] == j) continue;
-        Vec<Dim> offset = all.position[static_cast<std::size_t>(j)] - particles.position[i];
-        for (int k = 0; k < Dim && periodic; ++k) {
-          const double period = extent<Dim>()[static_cast<std::size_t>(k)];
-          offset[k] -= period * std::round(offset[k] / period);
-        }
-        near += NonSingularKernel::weight(norm(offset), near_radius);
-        far += NonSingularKernel::weight(norm(offset), far_radius);
+      const bool measures = edge == Edge::mirror && particles.type[i] == ParticleType::wall;
+      const bool has_row = particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::wall;
+      for (int j = 0; j < all.owned && has_row; ++j) {
+        if (edge == Edge::mirror && all.type[static_cast<std::size_t>(j)] == ParticleType::wall) continue;
+        for_images<Dim>(edge, all.position[static_cast<std::size_t>(j)], [&](const Vec<Dim>& position) {
+          const double r = norm(position - particles.position[i]);
+          if (r == 0.0) return;
+          near += NonSingularKernel::weight(r, near_radius);
+          if (!measures) far += NonSingularKernel::weight(r, far_radius);
+        });
       }
       EXPECT_NEAR(density[0][i], near, 1e-11);
       EXPECT_NEAR(density[1][i], far, 1e-11);
@@ -190,9 +207,9 @@ TYPED_TEST(Domains, HaloCompletesTheDensityOfBruteForce) {
 
 TYPED_TEST(Domains, HaloCarriesFieldsRowsAndShiftedPositions) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> all = cloud<Dim>();
-    auto domain = make_domain<Dim>(periodic, partitioner);
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> particles = settled_share(domain, all);
     const auto rows = domain.rows();
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(particles.size()));
@@ -211,33 +228,42 @@ TYPED_TEST(Domains, HaloCarriesFieldsRowsAndShiftedPositions) {
       ParticleRecord<Dim> record = particles.record(i);
       EXPECT_EQ(rows[at], row_of.at(record.id));
       const Vec<Dim> original = all.position[static_cast<std::size_t>(record.id)];
-      for (int k = 0; k < Dim; ++k) {
-        const double periods = (record.position[k] - original[k]) / extent<Dim>()[static_cast<std::size_t>(k)];
-        EXPECT_NEAR(periods, std::round(periods), 1e-12);
-        EXPECT_LE(std::abs(periods), periodic ? 1.001 : 0.0);
-      }
+      bool is_image = false;
+      for_images<Dim>(edge, original,
+                      [&](const Vec<Dim>& image) { is_image |= norm(image - record.position) < 1e-12; });
+      EXPECT_TRUE(is_image);
+      if (edge == Edge::mirror)
+        for (int k = 0; k < Dim; ++k)
+          if (std::abs(record.position[k] - original[k]) > 1e-12) record.velocity[k] *= -1.0;
       record.position = original;
       record.pressure_impulse = all.pressure_impulse[static_cast<std::size_t>(record.id)];  // stays with the owner
       expect_record(record, all);
     }
 
-    // After a move of the owners the copies follow.
+    // After a move of the owners the copies follow, and so do directions.
     const auto before = particles.position;
     const auto step = [](std::int64_t id, int k) { return 0.01 * std::sin(static_cast<double>(id + k)); };
-    for (int i = 0; i < particles.owned; ++i)
-      for (int k = 0; k < Dim; ++k)
-        particles.position[static_cast<std::size_t>(i)][k] += step(particles.id[static_cast<std::size_t>(i)], k);
+    std::vector<Vec<Dim>> direction(particles.position.size());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      for (int k = 0; k < Dim; ++k) direction[i][k] = step(particles.id[i], k);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) particles.position[i] += direction[i];
     domain.refresh_positions(particles);
-    for (std::size_t i = 0; i < before.size(); ++i)
-      for (int k = 0; k < Dim; ++k)
-        EXPECT_NEAR(particles.position[i][k], before[i][k] + step(particles.id[i], k), 1e-13);
+    domain.refresh_directions(direction, particles.owned);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      for (int k = 0; k < Dim; ++k) {
+        const double original = all.position[static_cast<std::size_t>(particles.id[i])][k];
+        const bool reflected = edge == Edge::mirror && std::abs(before[i][k] - original) > 1e-12;
+        EXPECT_NEAR(direction[i][k], (reflected ? -1.0 : 1.0) * step(particles.id[i], k), 1e-13);
+        EXPECT_NEAR(particles.position[i][k], before[i][k] + direction[i][k], 1e-13);
+      }
+    }
   });
 }
 
 TYPED_TEST(Domains, ParticlesWanderWithoutLoss) {
   constexpr int Dim = TypeParam::value;
   const Particles<Dim> all = cloud<Dim>();
-  auto domain = make_domain<Dim>(true);
+  auto domain = make_domain<Dim>(Edge::periodic);
   Particles<Dim> particles = share_of(all);
   domain.partition(particles);
   domain.migrate(particles);
@@ -258,7 +284,7 @@ TYPED_TEST(Domains, ParticlesWanderWithoutLoss) {
 // All particles in one cell: one rank has them all, the others none.
 TYPED_TEST(Domains, RanksMayBeEmpty) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
+  this->for_variants([](Edge edge, Partitioner partitioner) {
     const Particles<Dim> everywhere = cloud<Dim>();
     Particles<Dim> few;
     for (int i = 0; i < everywhere.owned; ++i) {
@@ -268,7 +294,7 @@ TYPED_TEST(Domains, RanksMayBeEmpty) {
       record.type = ParticleType::fluid;
       few.append(record);
     }
-    auto domain = make_domain<Dim>(periodic, partitioner);
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> particles = share_of(few);
     domain.partition(particles);
     EXPECT_EQ(domain.migrate(particles), 0);
@@ -284,8 +310,8 @@ TYPED_TEST(Domains, RanksMayBeEmpty) {
 
 TYPED_TEST(Domains, WithoutParticlesAreHarmless) {
   constexpr int Dim = TypeParam::value;
-  this->for_variants([](bool periodic, Partitioner partitioner) {
-    auto domain = make_domain<Dim>(periodic, partitioner);
+  this->for_variants([](Edge edge, Partitioner partitioner) {
+    auto domain = make_domain<Dim>(edge, partitioner);
     Particles<Dim> none;
     domain.partition(none);
     EXPECT_EQ(domain.migrate(none), 0);
@@ -298,7 +324,7 @@ TYPED_TEST(Domains, WithoutParticlesAreHarmless) {
 TYPED_TEST(Domains, CountParticlesThatLeaveTheGrid) {
   constexpr int Dim = TypeParam::value;
   const Particles<Dim> all = cloud<Dim>();
-  auto domain = make_domain<Dim>(false);
+  auto domain = make_domain<Dim>(Edge::open);
   Particles<Dim> particles = share_of(all);
   domain.partition(particles);
   domain.migrate(particles);

@@ -34,19 +34,23 @@ void expect_plan_of_this_rank(const Config& config, MPI_Comm planners) {
   std::vector<PetscInt> row_end(owned.size());
   std::partial_sum(owned.begin(), owned.end(), row_end.begin());
   std::int64_t rows = 0;
-  std::int64_t halo_rows = 0;
+  std::int64_t received_rows = 0;
   std::set<std::ptrdiff_t> senders;
   for (int i = 0; i < particles.size(); ++i) {
-    (i < particles.owned ? rows : halo_rows) += has_row(i);
-    if (i < particles.owned) continue;
+    if (i < particles.owned) {
+      rows += has_row(i);
+      continue;
+    }
     const PetscInt row = simulation.domain().rows()[static_cast<std::size_t>(i)];
-    senders.insert(std::upper_bound(row_end.begin(), row_end.end(), row) - row_end.begin());
+    const auto sender = std::upper_bound(row_end.begin(), row_end.end(), row) - row_end.begin();
+    senders.insert(sender);
+    if (sender != rank_of(comm)) received_rows += has_row(i);
   }
   senders.erase(rank_of(comm));
   EXPECT_EQ(here.owned, particles.owned);
   EXPECT_EQ(here.rows, rows);
   EXPECT_EQ(here.halo, particles.size() - particles.owned);
-  EXPECT_EQ(here.halo_rows, halo_rows);
+  EXPECT_EQ(here.received_rows, received_rows);
   EXPECT_EQ(here.neighbours, static_cast<std::int64_t>(senders.size()));
   EXPECT_EQ(plan.cells, simulation.domain().cells().count());
 
@@ -82,7 +86,7 @@ TEST(Plan, HoldsEveryParticleOnceWhereRanksAreMany) {
         owned += rank.owned;
         occupied += rank.nodes;
         EXPECT_LT(rank.neighbours, ranks);
-        EXPECT_EQ(rank.halo > 0, rank.neighbours > 0);
+        EXPECT_EQ(rank.received > 0, rank.neighbours > 0);
       }
       EXPECT_EQ(owned, simulation.report().particles);
       EXPECT_EQ(occupied, plan.occupied);
@@ -110,7 +114,7 @@ TEST(Plan, BoundsTheTrafficOfAStep) {
       }
       const double sent = sum_over_ranks(comm, petsc_isend_len - before);
       if (rank_of(comm) == 0) fmt::print("  sent {:.0f}, planned {:.0f} bytes\n", sent, planned);
-      EXPECT_LE(sent, 1.05 * planned);
+      EXPECT_LE(sent, 1.05 * planned + 100.0);
       EXPECT_GE(sent, 0.7 * planned);
     }
   }

@@ -71,10 +71,15 @@ PressureRole all_unknown(const Vec<2>&) { return PressureRole::unknown; }
 /// A problem on the ranks of a communicator.
 class Distributed {
  public:
+  static Edges<2> edges(const Problem& problem) {
+    const Edge edge = problem.periodic ? Edge::periodic : Edge::open;
+    return {{{edge, edge}, {edge, edge}}};
+  }
+
   Distributed(MPI_Comm comm, const Problem& problem, double tolerance = 1e-12)
       : comm_(comm),
         n_(problem.count()),
-        domain_(comm, {{}, problem.size}, {problem.periodic, problem.periodic}, radius, Partitioner::metis),
+        domain_(comm, {{}, problem.size}, edges(problem), radius, Partitioner::metis),
         search_(domain_.sorting_cells(), Domain<2>::cell_parts, KernelType::non_singular, 2.1, radius),
         solver_(comm, tolerance) {
     for_share(static_cast<std::int64_t>(n_), rank_of(comm), ranks_of(comm),

@@ -14,8 +14,12 @@ namespace {
 
 const MPI_Comm comm = MPI_COMM_WORLD;
 
-TEST(ShearWave, DecaysAtTheAnalyticRate) {
-  const Config config = shipped_case("shear-wave.toml");
+class ShearWave : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, ShearWave, testing::Values("consistent", "paper"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(ShearWave, DecaysAtTheAnalyticRate) {
+  const Config config = shipped_case("shear-wave.toml", {"scheme=" + GetParam()});
   Simulation<2> simulation(comm, config);
   while (simulation.report().time < config.time.end - 1e-9) simulation.step();
 

@@ -87,6 +87,100 @@ TEST(Config, TakesDefaultsFromTheOtherKeys) {
   EXPECT_EQ(parse("", box_base).time.max_speed, 1.0);
 }
 
+/// The lines of a resolved text, each with its table: "time.dt = 0.001".
+std::vector<std::string> resolved_lines(const Config& config) {
+  std::vector<std::string> lines;
+  std::istringstream text(config.resolved_text);
+  std::string table;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with('[')) table = line.substr(1, line.size() - 2) + ".";
+    if (line.find(" = ") != line.npos) lines.push_back(table + line);
+  }
+  return lines;
+}
+
+const char* const scheme_keys[] = {
+    "pressure.density_speed",    "pressure.corrected_divergence", "pressure.corrected_gradient", "walls.model",
+    "free_surface.zero_outside", "shifting.coefficient",          "shifting.correct_velocity",   "collision.distance"};
+
+std::string scheme_value(const std::string& scheme, const std::string& key) {
+  for (const std::string& line : resolved_lines(parse("scheme = \"" + scheme + "\"")))
+    if (line.starts_with(key + " = ")) return line.substr(key.size() + 3);
+  return "no value";
+}
+
+TEST(Config, TheSchemeSetsDefaults) {
+  const auto check = [](const Config& c, bool consistent) {
+    EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
+    EXPECT_EQ(c.pressure.density_speed, consistent ? 0.5 : 0.0);
+    EXPECT_EQ(c.pressure.corrected_divergence, consistent);
+    EXPECT_EQ(c.pressure.corrected_gradient, consistent);
+    EXPECT_EQ(c.free_surface.zero_outside, consistent);
+    EXPECT_EQ(c.shifting.coefficient, consistent ? 2.0 : 0.0);
+    EXPECT_EQ(c.shifting.correct_velocity, consistent);
+    EXPECT_EQ(c.collision.distance, consistent ? 0.5 : 0.8);
+  };
+  check(parse(""), true);
+  check(parse("scheme = \"consistent\""), true);
+  check(parse("scheme = \"paper\""), false);
+  check(parse("", jet_base, {"scheme=paper"}), false);
+  // Nothing else.
+  const auto consistent = resolved_lines(parse("")), paper = resolved_lines(parse("scheme = \"paper\""));
+  ASSERT_EQ(consistent.size(), paper.size());
+  std::size_t different = 0;
+  for (std::size_t k = 0; k < paper.size(); ++k) different += paper[k] != consistent[k];
+  EXPECT_EQ(different, 1 + std::size(scheme_keys));
+}
+
+TEST(Config, GivenKeysWinOverTheScheme) {
+  for (const std::string scheme : {"consistent", "paper"}) {
+    const std::string other = scheme == "paper" ? "consistent" : "paper";
+    const auto usual = resolved_lines(parse("scheme = \"" + scheme + "\""));
+    for (const std::string key : scheme_keys) {
+      const std::string setting = key + " = " + scheme_value(other, key);
+      for (const std::string& text :
+           {setting + "\nscheme = \"" + scheme + "\"", "scheme = \"" + scheme + "\"\n" + setting}) {
+        const auto lines = resolved_lines(parse(text));
+        ASSERT_EQ(lines.size(), usual.size());
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+          const bool is_it = lines[k].starts_with(key + " = ");
+          EXPECT_EQ(lines[k], is_it ? setting : usual[k]);
+          EXPECT_EQ(lines[k] != usual[k], is_it);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(parse("walls.model = \"columns\"").walls.model, WallModel::columns);
+}
+
+TEST(Config, DescribeNamesTheDefaultsOfBothSchemes) {
+  const std::string text = describe_keys();
+  for (const std::string key : scheme_keys) {
+    const std::string fallback =
+        "; default " + scheme_value("consistent", key) + "; paper: " + scheme_value("paper", key);
+    const auto line = text.find("  " + key + " ");
+    ASSERT_NE(line, text.npos) << key;
+    EXPECT_NE(text.substr(line, text.find('\n', line) - line).find(fallback), text.npos) << key << fallback;
+  }
+}
+
+TEST(Config, FindsMistakesInTheSchemesKeys) {
+  EXPECT_EQ(mistakes_in("scheme = \"best\""),
+            Texts{"case.toml:1: scheme = \"best\": unknown word; allowed: \"consistent\", \"paper\""});
+  EXPECT_EQ(mistakes_in("walls.model = \"bricks\""),
+            Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"columns\", "
+                  "\"particles\""});
+  EXPECT_EQ(mistakes_in("pressure.density_speed = 5.1"),
+            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_max)"});
+  EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
+            Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
+  EXPECT_EQ(mistakes_in("collision.distance = 1.1"),
+            Texts{"case.toml:1: collision.distance = 1.1: out of range; allowed: [0, 1] (dp)"});
+  for (const std::string key : {"pressure.corrected_divergence", "pressure.corrected_gradient",
+                                "free_surface.zero_outside", "shifting.correct_velocity"})
+    EXPECT_EQ(mistakes_in(key + " = 1"), Texts{"case.toml:1: " + key + " = 1: not a boolean; allowed: true, false"});
+}
+
 TEST(Config, AFluidAtRestHasASpeedLimitToo) {
   EXPECT_DOUBLE_EQ(parse("fluid.gravity = [0, 0]", tank_base).time.max_speed, 20.0 * 0.01 / 1e-3);
   EXPECT_DOUBLE_EQ(parse("periodic_box.shear_speed = 0", box_base).time.max_speed, 20.0 * 0.0025 / 5e-4);
@@ -170,8 +264,8 @@ TEST(Config, FindsUnknownKeysAndNamesTheNearest) {
   EXPECT_EQ(mistakes_in("time.steps_in_all = 1"),
             Texts{"case.toml:1: time.steps_in_all = 1: unknown key; allowed: time.end, time.dt, time.cfl, "
                   "time.max_speed"});
-  EXPECT_EQ(mistakes_in("turbulence.model = \"k-epsilon\""),
-            Texts{"case.toml:1: turbulence.model = \"k-epsilon\": unknown key"});
+  EXPECT_EQ(mistakes_in("turbulence.closure = \"k-epsilon\""),
+            Texts{"case.toml:1: turbulence.closure = \"k-epsilon\": unknown key"});
 }
 
 TEST(Config, FindsKeysOfAnotherGeometry) {
@@ -396,14 +490,8 @@ TEST(Config, TheResolvedTextHasNoKeysOfOtherGeometries) {
 TEST(Config, DescribeListsEveryKey) {
   const std::string text = describe_keys();
   for (const NamedText& base : {jet_base, tank_base, box_base}) {
-    std::istringstream lines(parse("", base).resolved_text);
-    std::string table;
-    for (std::string line; std::getline(lines, line);) {
-      if (line.starts_with('[')) table = line.substr(1, line.size() - 2) + ".";
-      if (const auto equals = line.find(" = "); equals != line.npos) {
-        EXPECT_NE(text.find("  " + table + line.substr(0, equals) + " "), text.npos) << table << line;
-      }
-    }
+    for (const std::string& line : resolved_lines(parse("", base)))
+      EXPECT_NE(text.find("  " + line.substr(0, line.find(" = ")) + " "), text.npos) << line;
   }
   EXPECT_NE(text.find("(0, 90] (deg); required"), text.npos);
   EXPECT_NE(text.find("default \"non_singular\""), text.npos);
@@ -492,6 +580,8 @@ TEST(Config, ThePapersCasesAreThoseOfItsTables) {
   const auto check = [&](const std::string& name, double gamma, KernelType kernel) {
     for (const int angle : {30, 60}) {
       const Config c = parse_case(load_case_files(paper / ("jet" + std::to_string(angle) + "-" + name + ".toml")));
+      EXPECT_EQ(c.scheme, Scheme::paper);
+      EXPECT_EQ(c.walls.model, WallModel::particles);
       EXPECT_EQ(c.pressure.gamma, gamma);
       EXPECT_EQ(c.kernel.type, kernel);
       EXPECT_EQ(c.jet.angle, angle);

@@ -24,16 +24,17 @@ constexpr double width = 0.4;
 constexpr double speed = 1.5;
 constexpr int row_length = 10;  // width / dp
 
-Config jet_case(double angle, const char* start = "impact") {
+Config jet_case(double angle, const char* start = "impact", const char* walls = "particles") {
   return parse_case({{"jet.toml", fmt::format(R"(geometry = "jet"
 particles.spacing = {}
 time = {{end = 1.0, dt = 1e-3}}
 jet = {{width = {}, speed = {}, angle = {}, start = "{}"}}
+walls.model = "{}"
 )",
-                                              dp, width, speed, angle, start)}});
+                                              dp, width, speed, angle, start, walls)}});
 }
 
-Config tank_case(int dimension) {
+Config tank_case(int dimension, const char* walls = "particles") {
   const bool flat = dimension == 2;
   return parse_case({{"tank.toml", fmt::format(R"(geometry = "tank"
 dimension = {}
@@ -41,9 +42,10 @@ particles.spacing = 0.01
 time = {{end = 1.0, dt = 1e-3}}
 fluid.gravity = {}
 tank = {{size = {}, fluid_height = 0.07}}
+walls.model = "{}"
 )",
                                                dimension, flat ? "[0.0, -9.81]" : "[0.0, 0.0, -9.81]",
-                                               flat ? "[0.2, 0.1]" : "[0.2, 0.05, 0.1]")}});
+                                               flat ? "[0.2, 0.1]" : "[0.2, 0.05, 0.1]", walls)}});
 }
 
 Config box_case(int dimension) {
@@ -76,6 +78,40 @@ double smallest_distance(const Particles<Dim>& particles) {
     for (std::size_t j = 0; j < i; ++j)
       smallest = std::min(smallest, norm(particles.position[i] - particles.position[j]));
   return smallest;
+}
+
+/// Every ghost's wall particle is the one nearest to it.
+template <int Dim>
+void expect_nearest_walls_of_ghosts(const Config& config) {
+  const Particles<Dim> particles = fill<Dim>(config);
+  const auto geometry = make_geometry<Dim>(config);
+  ASSERT_GT(count(particles, ParticleType::ghost), 0);
+  for (int ghost = 0; ghost < particles.owned; ++ghost) {
+    const auto& position = particles.position[static_cast<std::size_t>(ghost)];
+    if (particles.type[static_cast<std::size_t>(ghost)] != ParticleType::ghost) continue;
+    double nearest = 1e300;
+    std::int64_t wall = -1;
+    for (std::size_t j = 0; j < particles.id.size(); ++j) {
+      const double distance = norm(particles.position[j] - position);
+      if (particles.type[j] != ParticleType::wall || distance >= nearest) continue;
+      nearest = distance;
+      wall = particles.id[j];
+    }
+    ASSERT_EQ(geometry->wall_of_ghost(particles.id[static_cast<std::size_t>(ghost)]), wall)
+        << "ghost at " << position[0] << ", " << position[1];
+  }
+}
+
+/// The fluid is the same whatever the walls are.
+void expect_the_same_fluid(const Config& config, const Config& other) {
+  const auto fluid = [](const Particles<2>& particles) {
+    std::set<std::array<double, 2>> positions;
+    for (std::size_t i = 0; i < particles.position.size(); ++i)
+      if (particles.type[i] == ParticleType::fluid) positions.insert(particles.position[i].component);
+    return positions;
+  };
+  EXPECT_FALSE(fluid(fill<2>(config)).empty());
+  EXPECT_EQ(fluid(fill<2>(config)), fluid(fill<2>(other)));
 }
 
 template <int Dim>
@@ -125,16 +161,82 @@ TEST(Tank, HasFluidInsideOneRowOfWallAndGhostsBehindIt) {
 }
 
 TEST(Tank, FloorIsTheBottomWallRow) {
-  const auto geometry = make_geometry<2>(tank_case(2));
-  const Particles<2> tank = fill<2>(tank_case(2));
-  int floor = 0;
-  for (int i = 0; i < tank.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (tank.type[self] != ParticleType::wall || !geometry->on_floor(tank.position[self])) continue;
-    EXPECT_NEAR(tank.position[self][1], -0.005, 1e-12);
-    ++floor;
+  for (const char* walls : {"particles", "mirror"}) {
+    const auto geometry = make_geometry<2>(tank_case(2, walls));
+    const Particles<2> tank = fill<2>(tank_case(2, walls));
+    int floor = 0;
+    for (int i = 0; i < tank.owned; ++i) {
+      const auto self = static_cast<std::size_t>(i);
+      if (tank.type[self] != ParticleType::wall || !geometry->on_floor(tank.position[self])) continue;
+      EXPECT_NEAR(tank.position[self][1], *walls == 'm' ? 0.0 : -0.005, 1e-12);
+      ++floor;
+    }
+    EXPECT_EQ(floor, 20) << walls;
   }
-  EXPECT_EQ(floor, 20);
+}
+
+TEST(Tank, GhostsStandBehindTheNearestWallParticle) {
+  expect_nearest_walls_of_ghosts<2>(tank_case(2));
+  expect_nearest_walls_of_ghosts<3>(tank_case(3));
+}
+
+template <int Dim>
+void expect_mirrored_tank(const Vec<Dim>& size, int walls) {
+  const Config config = tank_case(Dim, "mirror");
+  const auto geometry = make_geometry<Dim>(config);
+  const Box<Dim> bounds = geometry->bounds();
+  EXPECT_EQ(bounds.low, Vec<Dim>{});
+  for (int k = 0; k < Dim; ++k) {
+    const AxisEdges edges = geometry->edges()[static_cast<std::size_t>(k)];
+    const bool vertical = k == Dim - 1;
+    EXPECT_EQ(edges.low, Edge::mirror);
+    EXPECT_EQ(edges.high, vertical ? Edge::open : Edge::mirror);
+    EXPECT_EQ(bounds.high[k], (vertical ? 2.0 : 1.0) * size[k]);
+  }
+
+  const Particles<Dim> tank = fill<Dim>(config);
+  EXPECT_EQ(count(tank, ParticleType::fluid), count(fill<Dim>(tank_case(Dim)), ParticleType::fluid));
+  EXPECT_EQ(count(tank, ParticleType::ghost), 0);
+  EXPECT_EQ(count(tank, ParticleType::wall), walls);
+  EXPECT_NEAR(smallest_distance(tank), 0.005, 1e-12);  // between a corner and its neighbours
+  const CellGrid<Dim> cells(bounds, geometry->edges(), 0.0401);
+  for (std::size_t i = 0; i < tank.position.size(); ++i) {
+    EXPECT_GE(cells.cell(cells.wrapped(tank.position[i])), 0);
+    if (tank.type[i] != ParticleType::wall) continue;
+    bool on_surface = tank.position[i][Dim - 1] == 0.0;
+    for (int k = 0; k < Dim; ++k) {
+      EXPECT_GE(tank.position[i][k], 0.0);
+      EXPECT_LT(tank.position[i][k], size[k]);
+      on_surface |= k < Dim - 1 && (tank.position[i][k] == 0.0 || tank.position[i][k] > size[k] - 1e-12);
+    }
+    EXPECT_TRUE(on_surface);
+  }
+}
+
+TEST(Tank, OfMirrorsHasWallParticlesOnTheSurfaceOnly) {
+  expect_mirrored_tank<2>({{0.2, 0.1}}, 22 * 11 - 20 * 10);
+  expect_mirrored_tank<3>({{0.2, 0.05, 0.1}}, 22 * 7 * 11 - 20 * 5 * 10);
+  expect_the_same_fluid(tank_case(2, "mirror"), tank_case(2));
+}
+
+TEST(Jet, GhostsStandBehindTheNearestWallParticle) { expect_nearest_walls_of_ghosts<2>(jet_case(60.0, "steady")); }
+
+TEST(Jet, OnAMirrorHasWallParticlesOnTheSurfaceOnly) {
+  for (const char* start : {"impact", "steady"}) {
+    const Config config = jet_case(60.0, start, "mirror");
+    const auto geometry = make_geometry<2>(config);
+    const Edges<2> edges = geometry->edges();
+    EXPECT_EQ(edges[1].low, Edge::mirror);
+    for (const Edge other : {edges[0].low, edges[0].high, edges[1].high}) EXPECT_EQ(other, Edge::open);
+    EXPECT_EQ(geometry->bounds().low[1], 0.0);
+
+    const Particles<2> jet = fill<2>(config);
+    EXPECT_EQ(count(jet, ParticleType::ghost), 0);
+    EXPECT_EQ(count(jet, ParticleType::wall), std::lround((config.plate.end - config.plate.begin) / dp));
+    for (std::size_t i = 0; i < jet.position.size(); ++i)
+      EXPECT_EQ(jet.type[i] == ParticleType::wall, jet.position[i][1] == 0.0);
+    expect_the_same_fluid(config, jet_case(60.0, start));
+  }
 }
 
 TEST(PeriodicBox, IsFullOfFluidInAShearFlow) {
@@ -146,13 +248,22 @@ TEST(PeriodicBox, IsFullOfFluidInAShearFlow) {
     EXPECT_EQ(box.velocity[i][1], 0.0);
   }
   EXPECT_EQ(fill<3>(box_case(3)).owned, 20 * 15 * 13);
-  EXPECT_TRUE(make_geometry<3>(box_case(3))->periodic()[2]);
-  EXPECT_FALSE(make_geometry<2>(tank_case(2))->periodic()[0]);
+  for (const AxisEdges edges : make_geometry<3>(box_case(3))->edges()) {
+    EXPECT_EQ(edges.low, Edge::periodic);
+    EXPECT_EQ(edges.high, Edge::periodic);
+  }
+  for (const AxisEdges edges : make_geometry<2>(tank_case(2))->edges()) {
+    EXPECT_EQ(edges.low, Edge::open);
+    EXPECT_EQ(edges.high, Edge::open);
+  }
 }
 
 TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
   expect_the_same_for_any_number_of_ranks<2>(tank_case(2));
   expect_the_same_for_any_number_of_ranks<3>(tank_case(3));
+  expect_the_same_for_any_number_of_ranks<2>(tank_case(2, "mirror"));
+  expect_the_same_for_any_number_of_ranks<3>(tank_case(3, "mirror"));
+  expect_the_same_for_any_number_of_ranks<2>(jet_case(47.0, "steady", "mirror"));
   expect_the_same_for_any_number_of_ranks<2>(box_case(2));
   expect_the_same_for_any_number_of_ranks<3>(box_case(3));
   expect_the_same_for_any_number_of_ranks<2>(jet_case(47.0));
@@ -160,12 +271,13 @@ TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
 }
 
 TEST(Geometry, ParticlesStartInsideTheBounds) {
-  for (const Config& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady")}) {
+  for (const Config& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady"),
+                               tank_case(2, "mirror"), jet_case(30.0, "steady", "mirror")}) {
     const Box<2> bounds = make_geometry<2>(config)->bounds();
     const Particles<2> particles = fill<2>(config);
     for (const auto& position : particles.position) {
       for (int k = 0; k < 2; ++k) {
-        EXPECT_GT(position[k], bounds.low[k]);
+        EXPECT_GE(position[k], bounds.low[k]);
         EXPECT_LT(position[k], bounds.high[k]);
       }
     }
@@ -359,6 +471,21 @@ TEST_P(JetInlet, SteadyStartFillsTheAnalyticJet) {
 INSTANTIATE_TEST_SUITE_P(Angles, JetInlet, testing::Values(30.0, 47.0, 60.0, 90.0));
 
 TEST(Tank, WallNormalsPointIntoTheFluid) {
+  for (const char* walls : {"particles", "mirror"}) {
+    const auto geometry = make_geometry<3>(tank_case(3, walls));
+    const Particles<3> particles = fill<3>(tank_case(3, walls));
+    const Vec<3> size{{0.2, 0.05, 0.1}};
+    for (std::size_t i = 0; i < particles.position.size(); ++i) {
+      if (particles.type[i] != ParticleType::wall) continue;
+      const Vec<3> normal = geometry->wall_normal(particles.position[i]);
+      EXPECT_NEAR(norm(normal), 1.0, 1e-14);
+      const Vec<3> inside = particles.position[i] + 0.01 * normal;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_GT(inside[k], 0.0);
+        EXPECT_LT(inside[k], size[k]);
+      }
+    }
+  }
   const auto tank = make_geometry<2>(shipped_case("hydrostatic.toml"));  // 0.2 m wide
   EXPECT_EQ(tank->wall_normal({{0.1, -0.005}}), (Vec<2>{{0.0, 1.0}}));
   EXPECT_EQ(tank->wall_normal({{-0.005, 0.1}}), (Vec<2>{{1.0, 0.0}}));

@@ -2,6 +2,8 @@
 
 #include "impinge/neighbours.hpp"
 
+#include <map>
+#include <numeric>
 #include <set>
 
 #include "cloud.hpp"
@@ -44,13 +46,14 @@ class Neighbours : public testing::Test {
     return sorted(cells(), cloud(), [](const auto&) { return true; });
   }
 
-  /// The cells of the first half along x are owned; those of the second stand in the halo, sent by two ranks.
-  static Particles<Dim> half_owned() {
+  /// The cells of the first half along x are owned; those of the second stand in the halo, sent by two ranks, each of
+  /// which may have sent a part of a cell.
+  static Particles<Dim> half_owned(bool parts = false) {
     const CellGrid<Dim> grid = cells();
     const int half = grid.extent()[0] / 2;
     const auto part = [&](const ParticleRecord<Dim>& record) {
       const auto at = grid.coordinates(record.position);
-      return at[0] < half ? 0 : at[1] % 2 == 0 ? 1 : 2;
+      return at[0] < half ? 0 : (parts ? record.id : at[1]) % 2 == 0 ? 1 : 2;
     };
     Particles<Dim> particles = sorted(grid, cloud(), [&](const auto& record) { return part(record) == 0; });
     const int owned = particles.owned;
@@ -68,7 +71,37 @@ class Neighbours : public testing::Test {
     return found;
   }
 
+  static NeighbourSearch<Dim> search_mirrored(const Particles<Dim>& particles) {
+    NeighbourSearch<Dim> found(cells(), reach, KernelType::non_singular, near_radius, far_radius, true);
+    found.search(particles);
+    return found;
+  }
+
+  static NeighbourSearch<Dim> search(const Particles<Dim>& particles, std::span<const int> column) {
+    NeighbourSearch<Dim> found(cells(), reach, KernelType::non_singular, near_radius, far_radius);
+    found.search(particles, column);
+    return found;
+  }
+
+  /// Each ghost with some wall particle, on the same side of the halo's begin.
+  static std::vector<int> columns(const Particles<Dim>& particles) {
+    std::vector<int> column(particles.position.size());
+    std::iota(column.begin(), column.end(), 0);
+    for (const bool halo : {false, true}) {
+      std::vector<int> walls;
+      const auto is = [&](std::size_t i, ParticleType type) {
+        return (static_cast<int>(i) >= particles.owned) == halo && particles.type[i] == type;
+      };
+      for (std::size_t i = 0; i < column.size(); ++i)
+        if (is(i, ParticleType::wall)) walls.push_back(static_cast<int>(i));
+      for (std::size_t i = 0; i < column.size(); ++i)
+        if (is(i, ParticleType::ghost)) column[i] = walls.at((i + i / 9) % walls.size());
+    }
+    return column;
+  }
+
   static bool has_row(ParticleType type) { return type == ParticleType::fluid || type == ParticleType::wall; }
+  static bool is_any(ParticleType) { return true; }
 
   static std::vector<std::int64_t> neighbour_ids(const PairList& list, const Particles<Dim>& particles, int i) {
     std::vector<std::int64_t> ids;
@@ -77,15 +110,19 @@ class Neighbours : public testing::Test {
     return ids;
   }
 
+  /// Pairs of those with a row and those in a row.
   template <class Kernel>
-  static void expect_brute_force_pairs(const Particles<Dim>& particles, const PairList& list, double radius) {
+  static void expect_brute_force_pairs(const Particles<Dim>& particles, const PairList& list, double radius,
+                                       bool (*is_row)(ParticleType) = has_row,
+                                       bool (*is_in_row)(ParticleType) = is_any) {
     ASSERT_EQ(list.rows(), particles.owned);
     std::int64_t pairs = 0;
     for (int i = 0; i < particles.owned; ++i) {
       const auto self = static_cast<std::size_t>(i);
       std::set<std::pair<int, double>> expected, actual;
-      if (has_row(particles.type[self])) {
+      if (is_row(particles.type[self])) {
         for (int j = 0; j < particles.size(); ++j) {
+          if (!is_in_row(particles.type[static_cast<std::size_t>(j)])) continue;
           const double r = norm(particles.position[static_cast<std::size_t>(j)] - particles.position[self]);
           if (j != i && r < radius) expected.emplace(j, Kernel::weight(r, radius));
         }
@@ -125,6 +162,105 @@ TYPED_TEST(Neighbours, RowsKeepTheirOrderWhoeverOwnsTheParticles) {
     const int j = static_cast<int>(std::find(whole.id.begin(), whole.id.end(), id) - whole.id.begin());
     EXPECT_EQ(this->neighbour_ids(in_half.far(), half, i), this->neighbour_ids(in_whole.far(), whole, j));
     EXPECT_EQ(this->neighbour_ids(in_half.near(), half, i), this->neighbour_ids(in_whole.near(), whole, j));
+  }
+}
+
+// Mirror images of one cell may come from several ranks.
+TYPED_TEST(Neighbours, RowsBesideMirrorsKeepTheirOrderWhoeverSentTheImages) {
+  const auto whole = this->half_owned(), parts = this->half_owned(true);
+  const auto in_whole = this->search_mirrored(whole), in_parts = this->search_mirrored(parts);
+  for (int i = 0; i < whole.owned; ++i)
+    EXPECT_EQ(this->neighbour_ids(in_parts.far(), parts, i), this->neighbour_ids(in_whole.far(), whole, i));
+}
+
+TYPED_TEST(Neighbours, WallParticlesOnMirrorsMeasureOnly) {
+  const auto is_no_wall = [](ParticleType type) { return type != ParticleType::wall; };
+  const auto is_fluid = [](ParticleType type) { return type == ParticleType::fluid; };
+  for (const auto& particles : {this->all_owned(), this->half_owned()}) {
+    const auto found = this->search_mirrored(particles);
+    this->template expect_brute_force_pairs<NonSingularKernel>(particles, found.near(), near_radius, this->has_row,
+                                                               is_no_wall);
+    this->template expect_brute_force_pairs<NonSingularKernel>(particles, found.far(), far_radius, is_fluid,
+                                                               is_no_wall);
+  }
+}
+
+TYPED_TEST(Neighbours, OfColumnsAreThoseOfBruteForce) {
+  for (const auto& particles : {this->all_owned(), this->half_owned()}) {
+    const std::vector<int> column = this->columns(particles);
+    const auto found = this->search(particles, column);
+    this->template expect_brute_force_pairs<NonSingularKernel>(
+        particles, found.near(), near_radius, [](ParticleType type) { return type != ParticleType::inlet; });
+
+    std::map<std::pair<int, int>, double> expected;
+    for (int i = 0; i < particles.owned; ++i) {
+      const int row = column[static_cast<std::size_t>(i)];
+      if (particles.type[static_cast<std::size_t>(i)] == ParticleType::inlet) continue;
+      for (int j = 0; j < particles.size(); ++j) {
+        const int other = column[static_cast<std::size_t>(j)];
+        const double r =
+            norm(particles.position[static_cast<std::size_t>(j)] - particles.position[static_cast<std::size_t>(i)]);
+        if (r < far_radius && other != row) expected[{row, other}] += NonSingularKernel::weight(r, far_radius);
+      }
+    }
+    const PairList& far = found.far();
+    ASSERT_EQ(far.rows(), particles.owned);
+    std::map<std::pair<int, int>, double> actual;
+    for (int i = 0; i < particles.owned; ++i) {
+      int last = -1;
+      for (int k = far.begin(i); k < far.end(i); ++k) {
+        const int j = far.index[static_cast<std::size_t>(k)];
+        ASSERT_TRUE(actual.try_emplace({i, j}, far.weight[static_cast<std::size_t>(k)]).second) << "listed twice";
+        if (j >= particles.owned) continue;
+        EXPECT_GT(j, last);
+        last = j;
+      }
+    }
+    ASSERT_EQ(actual.size(), expected.size());
+    for (const auto& [pair, weight] : actual) {
+      const auto& [i, j] = pair;
+      ASSERT_TRUE(expected.contains(pair)) << i << ", " << j;
+      EXPECT_NEAR(weight, expected[pair], 1e-12) << i << ", " << j;
+      if (j < particles.owned && particles.type[static_cast<std::size_t>(j)] != ParticleType::inlet) {
+        EXPECT_NEAR(weight, actual.at({j, i}), 1e-12) << i << ", " << j;
+      }
+    }
+  }
+}
+
+TYPED_TEST(Neighbours, OfASingleColumnHaveOnePair) {
+  Particles<TestFixture::Dim> particles;
+  for (const ParticleType type : {ParticleType::ghost, ParticleType::wall, ParticleType::fluid}) {
+    const int i = particles.owned;
+    Vec<TestFixture::Dim> position;
+    position.component.fill(1.0);
+    position[0] += i;
+    particles.append({position, {}, 0.0, 0.0, i, type});
+  }
+  const auto found = this->search(particles, std::vector<int>{1, 1, 2});
+  const double both = NonSingularKernel::weight(1.0, far_radius) + NonSingularKernel::weight(2.0, far_radius);
+  EXPECT_EQ(found.far().start, (std::vector<int>{0, 0, 1, 2}));
+  for (const auto& [pair, neighbour] : {std::pair{0U, 2}, std::pair{1U, 1}}) {
+    EXPECT_EQ(found.far().index[pair], neighbour);
+    EXPECT_NEAR(found.far().weight[pair], both, 1e-14);
+  }
+}
+
+TYPED_TEST(Neighbours, RowsOfColumnsKeepTheirOrderWhoeverOwnsTheParticles) {
+  const auto half = this->half_owned();
+  auto whole = this->all_owned();
+  std::map<std::int64_t, int> place;
+  for (int i = 0; i < whole.owned; ++i) place[whole.id[static_cast<std::size_t>(i)]] = i;
+  const auto in_whole = [&](int i) { return place.at(half.id[static_cast<std::size_t>(i)]); };
+  const std::vector<int> column = this->columns(half);
+  std::vector<int> whole_column(column.size());
+  for (int i = 0; i < half.size(); ++i)
+    whole_column[static_cast<std::size_t>(in_whole(i))] = in_whole(column[static_cast<std::size_t>(i)]);
+  const auto half_found = this->search(half, column);
+  const auto whole_found = this->search(whole, whole_column);
+  for (int i = 0; i < half.owned; ++i) {
+    EXPECT_EQ(this->neighbour_ids(half_found.far(), half, i),
+              this->neighbour_ids(whole_found.far(), whole, in_whole(i)));
   }
 }
 

@@ -4,77 +4,36 @@
 
 #include <cmath>
 
-#include "cloud.hpp"
+#include "cloud_with_pairs.hpp"
 #include "dimensions.hpp"
 
 namespace impinge {
 namespace {
 
-constexpr double near_radius = 2.1;
-constexpr double far_radius = 4.01;
-constexpr int reach = 2;
-
-/// A cloud with its pairs.
+/// u_k = (k + 2) x_k + 3 x_0 - x_1 + 1.
 template <int Dim>
-struct Cloud {
-  static constexpr std::array<int, Dim> extent() {
-    std::array<int, Dim> points;
-    points.fill(11);
-    return points;
-  }
+Vec<Dim> linear_velocity(const Vec<Dim>& x) {
+  Vec<Dim> u;
+  for (int k = 0; k < Dim; ++k) u[k] = (k + 2) * x[k] + 3.0 * x[0] - x[1] + 1.0;
+  return u;
+}
 
-  explicit Cloud(double jitter, KernelType kernel = KernelType::non_singular)
-      : sums(lattice_sums<Dim>(kernel, near_radius)), far_sums(lattice_sums<Dim>(kernel, far_radius)) {
-    Box<Dim> box;
-    for (int k = 0; k < Dim; ++k) box.high[k] = extent()[static_cast<std::size_t>(k)];
-    const auto cells = CellGrid<Dim>(box, {}, far_radius).refined(reach);
-    particles = sorted(cells, make_cloud<Dim>(extent(), jitter), [](const auto&) { return true; });
-    NeighbourSearch<Dim> search(cells, reach, kernel, near_radius, far_radius);
-    search.search(particles);
-    near = search.near();
-    far = search.far();
-  }
+template <int Dim>
+constexpr double trace = Dim == 2 ? 2 + 3 + 2 : 2 + 3 + 4 + 2;  // of its gradient
 
-  /// The particle nearest to a point.
-  int at(const Vec<Dim>& point) const {
-    int nearest = 0;
-    for (int i = 0; i < particles.owned; ++i)
-      if (distance(i, point) < distance(nearest, point)) nearest = i;
-    return nearest;
+template <int Dim>
+void set_linear_fields(Particles<Dim>& particles) {
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    const Vec<Dim> x = particles.position[i];
+    particles.velocity[i] = linear_velocity(x);
+    particles.pressure[i] = 7.0 + 2.0 * x[0] - 3.0 * x[Dim - 1];
   }
-  double distance(int i, const Vec<Dim>& point) const {
-    return norm(particles.position[static_cast<std::size_t>(i)] - point);
-  }
+}
 
-  int centre() const {
-    Vec<Dim> middle;
-    for (int k = 0; k < Dim; ++k) middle[k] = 5.5;
-    return at(middle);
-  }
-
-  /// In the middle of the top, with the normal along the last axis.
-  int on_surface() const {
-    Vec<Dim> top;
-    for (int k = 0; k < Dim; ++k) top[k] = k == Dim - 1 ? 10.5 : 5.5;
-    return at(top);
-  }
-
-  /// The sum of pressure_gradient over all particles.
-  Vec<Dim> gradient_sum() const {
-    Vec<Dim> sum;
-    for (int i = 0; i < particles.owned; ++i) sum += gradient(i);
-    return sum;
-  }
-  Vec<Dim> gradient(int i) const {
-    const std::vector<Vec<Dim>> no_wall(particles.type.size());
-    return pressure_gradient<Dim>(near, particles.position, particles.pressure, particles.type, no_wall,
-                                  sums.number_density, i);
-  }
-
-  LatticeSums sums, far_sums;
-  Particles<Dim> particles;
-  PairList near, far;
-};
+template <int Dim>
+void expect_gradient_of_linear_pressure(const Vec<Dim>& gradient, double tolerance) {
+  for (int k = 0; k < Dim; ++k) EXPECT_NEAR(gradient[k], k == 0 ? 2.0 : k == Dim - 1 ? -3.0 : 0.0, tolerance);
+}
 
 template <class Dimension>
 class Operators : public testing::Test {};
@@ -95,28 +54,78 @@ TYPED_TEST(Operators, NumberDensityIsThatOfTheFullLattice) {
 TYPED_TEST(Operators, AsymmetryIsThatOfAFlatSurface) {
   constexpr int Dim = TypeParam::value;
   const Cloud<Dim> lattice(0.0);
-  const auto asymmetry_of = [&](int i) {
-    return asymmetry<Dim>(lattice.near, lattice.particles.position, lattice.sums.number_density, i);
-  };
-  EXPECT_NEAR(asymmetry_of(lattice.centre()), 0.0, 1e-14);
-  EXPECT_NEAR(asymmetry_of(lattice.on_surface()), lattice.sums.surface_asymmetry, 1e-14);
+  EXPECT_NEAR(norm(lattice.asymmetry_of(lattice.centre())), 0.0, 1e-14);
+  Vec<Dim> outward;
+  outward[Dim - 1] = lattice.sums.surface_asymmetry;
+  EXPECT_NEAR(norm(lattice.asymmetry_of(lattice.on_surface()) - outward), 0.0, 1e-14);
 }
 
 TYPED_TEST(Operators, DivergenceIsExactOnLinearFields) {
   constexpr int Dim = TypeParam::value;
   for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
     Cloud<Dim> lattice(0.0, kernel);
-    // u_k = (k + 2) x_k + 3 x_0 - x_1 + 1: the trace is sum (k + 2) + 3 - 1.
-    double trace = 2.0;
-    for (int k = 0; k < Dim; ++k) trace += k + 2;
-    for (std::size_t i = 0; i < lattice.particles.velocity.size(); ++i) {
-      const Vec<Dim> x = lattice.particles.position[i];
-      for (int k = 0; k < Dim; ++k) lattice.particles.velocity[i][k] = (k + 2) * x[k] + 3.0 * x[0] - x[1] + 1.0;
-    }
+    set_linear_fields(lattice.particles);
     EXPECT_NEAR(divergence<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
                                 lattice.sums.number_density, lattice.centre()),
-                trace, 1e-12);
+                trace<Dim>, 1e-12);
   }
+}
+
+TYPED_TEST(Operators, CorrectedOnesAreExactOnLinearFieldsOfAnyCloud) {
+  constexpr int Dim = TypeParam::value;
+  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+    Cloud<Dim> cloud(0.2, kernel);
+    const Particles<Dim>& p = cloud.particles;
+    set_linear_fields(cloud.particles);
+    const std::vector<Vec<Dim>> no_wall(p.position.size());
+    const double n0 = cloud.sums.number_density;
+    for (const int i : {cloud.centre(), cloud.on_surface()}) {
+      EXPECT_GT(std::abs(divergence<Dim>(cloud.near, p.position, p.velocity, n0, i) - trace<Dim>), 0.01);
+      const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
+      EXPECT_NEAR(corrected_divergence<Dim>(cloud.near, p.position, p.velocity, no_wall, correction, n0, i), trace<Dim>,
+                  1e-10);
+      expect_gradient_of_linear_pressure(corrected_gradient<Dim>(cloud.near, p.position, p.pressure, correction, n0, i),
+                                         1e-10);
+    }
+  }
+}
+
+TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFieldsAndKnowsNoWalls) {
+  constexpr int Dim = TypeParam::value;
+  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+    Cloud<Dim> cloud(0.2, kernel);
+    Particles<Dim>& p = cloud.particles;
+    set_linear_fields(cloud.particles);
+    Vec<Dim> displacement;
+    for (int k = 0; k < Dim; ++k) displacement[k] = 0.1 - 0.07 * k;
+    const auto expect_exact = [&](int i) {
+      const Vec<Dim> centre = p.position[static_cast<std::size_t>(i)];
+      const Vec<Dim> expected = linear_velocity(centre + displacement) - linear_velocity(centre);
+      const Vec<Dim> change = velocity_change_along<Dim>(cloud.near, p.position, p.velocity, p.type, displacement,
+                                                         cloud.sums.number_density, i);
+      EXPECT_NEAR(norm(change - expected), 0.0, 1e-10);
+    };
+    expect_exact(cloud.centre());
+    expect_exact(cloud.on_surface());
+    for (std::size_t i = 0; i < p.type.size(); ++i) {  // two rows of wall right below the centre
+      if (p.position[i][Dim - 1] > 5.0) continue;
+      p.type[i] = p.position[i][Dim - 1] > 4.0 ? ParticleType::wall : ParticleType::ghost;
+      p.velocity[i] *= 100.0;
+    }
+    expect_exact(cloud.centre());
+  }
+}
+
+TYPED_TEST(Operators, VelocityChangesNoFurtherThanToTheNeighbours) {
+  constexpr int Dim = TypeParam::value;
+  Cloud<Dim> lattice(0.0);
+  set_linear_fields(lattice.particles);
+  Vec<Dim> displacement;
+  displacement[Dim - 1] = 5.0;
+  const Vec<Dim> change =
+      velocity_change_along<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
+                                 lattice.particles.type, displacement, lattice.sums.number_density, lattice.centre());
+  EXPECT_NEAR(change[Dim - 1], Dim == 2 ? 6.0 : 8.0, 1e-12);  // of the neighbour at (2, 0) or (0, 0, 2)
 }
 
 TYPED_TEST(Operators, VelocityLaplacianIsExactOnQuadraticFields) {
@@ -141,12 +150,8 @@ TYPED_TEST(Operators, VelocityLaplacianIsExactOnQuadraticFields) {
 TYPED_TEST(Operators, PressureGradientIsExactOnLinearFields) {
   constexpr int Dim = TypeParam::value;
   Cloud<Dim> lattice(0.0);
-  for (std::size_t i = 0; i < lattice.particles.pressure.size(); ++i) {
-    const Vec<Dim> x = lattice.particles.position[i];
-    lattice.particles.pressure[i] = 7.0 + 2.0 * x[0] - 3.0 * x[Dim - 1];
-  }
-  const Vec<Dim> gradient = lattice.gradient(lattice.centre());
-  for (int k = 0; k < Dim; ++k) EXPECT_NEAR(gradient[k], k == 0 ? 2.0 : k == Dim - 1 ? -3.0 : 0.0, 1e-12);
+  set_linear_fields(lattice.particles);
+  expect_gradient_of_linear_pressure(lattice.gradient(lattice.centre()), 1e-12);
 }
 
 TYPED_TEST(Operators, PressureForcesConserveMomentum) {
@@ -199,6 +204,67 @@ struct Group {
     return collision<Dim>(pairs(), position, velocity, type, normal, 0.1, 0.5, 0.2, i);
   }
 };
+
+TYPED_TEST(Operators, AreNotCorrectedWhereNeighboursAreTooFewOrInLine) {
+  constexpr int Dim = TypeParam::value;
+  const double n0 = lattice_sums<Dim>(KernelType::non_singular, near_radius).number_density;
+  Group<Dim> group;
+  Vec<Dim> displacement;
+  displacement.component.fill(1.0);
+  const auto expect_uncorrected = [&] {
+    EXPECT_EQ(moment_correction<Dim>(group.pairs(), group.position, n0, 0).row, Matrix<Dim>::identity().row);
+    EXPECT_EQ(
+        velocity_change_along<Dim>(group.pairs(), group.position, group.velocity, group.type, displacement, n0, 0),
+        Vec<Dim>{});
+  };
+  group.add(0.0, 0.0, 1.0, 0.0);
+  expect_uncorrected();
+  group.add(0.6, 0.8, 0.0, 1.0);
+  group.add(-0.6, -0.8, 0.0, 2.0);
+  group.add(1.2, 1.6, 0.0, 3.0);
+  expect_uncorrected();
+  group.add(0.8, -0.6, 2.0, 1.0);
+  group.add(-0.8, 0.6, 2.0, 1.0);
+  if constexpr (Dim == 2) {
+    EXPECT_NE(moment_correction<Dim>(group.pairs(), group.position, n0, 0).row, Matrix<Dim>::identity().row);
+  } else {
+    expect_uncorrected();  // all in a plane
+  }
+}
+
+TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
+  constexpr int Dim = TypeParam::value;
+  const double n0 = 4.0;
+  for (const ParticleType behind : {ParticleType::wall, ParticleType::ghost}) {
+    Group<Dim> pair;
+    pair.add(0.0, 0.0, 3.0, 0.0);
+    pair.add(0.6, -0.8, 0.0, 0.0, behind);
+    auto normal = pair.no_wall();
+    normal[1][1] = 1.0;
+    const auto of = [&](int i) {
+      return corrected_divergence<Dim>(pair.pairs(), pair.position, pair.velocity, normal, Matrix<Dim>::identity(), n0,
+                                       i);
+    };
+    EXPECT_EQ(of(0), 0.0);
+    EXPECT_EQ(of(1), 0.0);  // the wall's own row
+    pair.velocity[0][1] = -1.0;
+    const double factor = Dim / n0 * NonSingularKernel::weight(1.0, near_radius);
+    EXPECT_NEAR(of(0), -0.8 * factor, 1e-14);
+    EXPECT_NEAR(of(1), -0.8 * factor, 1e-14);
+    normal[0][0] = 1.0;  // two walls: (-3, 1) has (-1, -1) along (1, 1)
+    EXPECT_NEAR(of(0), 0.2 * factor, 1e-14);
+  }
+}
+
+TEST(Mean, IsWeighted) {
+  PairList pairs;
+  pairs.start = {0, 2, 2};
+  pairs.index = {1, 2};
+  pairs.weight = {1.0, 3.0};
+  const std::vector<double> value{100.0, 2.0, 6.0};
+  EXPECT_EQ(weighted_mean(pairs, value, 0), 5.0);
+  EXPECT_EQ(weighted_mean(pairs, value, 1), 0.0);
+}
 
 TYPED_TEST(Operators, PressureGradientIsThatOfEquation4ForAPair) {
   constexpr int Dim = TypeParam::value;
@@ -297,7 +363,12 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   std::vector<double> density{-1.0};
   number_density(none, density);
   EXPECT_EQ(density[0], 0.0);
-  EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), 0.0);
+  EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), Vec<Dim>{});
+  EXPECT_EQ(corrected_divergence<Dim>(none, single.position, single.velocity, single.no_wall(), Matrix<Dim>::identity(),
+                                      4.0, 0),
+            0.0);
+  EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, Matrix<Dim>::identity(), 4.0, 0),
+            Vec<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);
   EXPECT_EQ(velocity_laplacian<Dim>(none, single.velocity, 4.0, 0), Vec<Dim>{});
   EXPECT_EQ(pressure_gradient<Dim>(none, single.position, single.pressure, single.type, single.no_wall(), 4.0, 0),

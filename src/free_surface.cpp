@@ -1,0 +1,90 @@
+#include "impinge/free_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace impinge {
+namespace {
+
+constexpr double table_step = 0.02;  // [dp]
+constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
+
+// Over the lattice points beyond a flat surface that a particle `below` the depth of its unknown misses,
+// sum W (1 + d_g/depth). Lengths in dp.
+template <int Dim>
+double missing_weight(KernelType type, double effective_radius, double depth, double below) {
+  const int reach = static_cast<int>(std::ceil(effective_radius));
+  double sum = 0.0;
+  for (int x = -reach; x <= reach; ++x) {
+    for (int z = Dim == 2 ? 0 : -reach; z <= (Dim == 2 ? 0 : reach); ++z) {
+      for (double beyond = 0.5; depth + below + beyond < effective_radius; beyond += 1.0) {
+        const double r = std::hypot(x, z, depth + below + beyond);
+        sum += (1.0 + beyond / depth) *
+               with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int Dim>
+SurfaceClosure<Dim>::SurfaceClosure(KernelType type, double effective_radius, int layers) {
+  for (double depth = least_depth; depth < effective_radius + table_step; depth += table_step) {
+    weight_.push_back(0.0);
+    for (int layer = 0; layer < layers; ++layer)
+      weight_.back() += missing_weight<Dim>(type, effective_radius, depth, layer);
+  }
+}
+
+template <int Dim>
+double SurfaceClosure<Dim>::weight(double depth) const {
+  const double place = (std::max(depth, least_depth) - least_depth) / table_step;
+  if (!(place < static_cast<double>(weight_.size() - 1))) return 0.0;
+  const auto below = static_cast<std::size_t>(place);
+  const double upper = place - static_cast<double>(below);
+  return (1.0 - upper) * weight_[below] + upper * weight_[below + 1];
+}
+
+template <int Dim>
+double surface_depth(const PairList& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,
+                     std::span<const std::uint8_t> free_surface, double spacing, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
+  double depth = std::numeric_limits<double>::infinity();
+  for (int k = far.begin(i); k < far.end(i); ++k) {
+    const auto j = static_cast<std::size_t>(far.index[static_cast<std::size_t>(k)]);
+    const double size = norm(asymmetry[j]);
+    if (!free_surface[j] || size == 0.0) continue;
+    const double above = dot(position[j] - position[self], asymmetry[j]) / (size * spacing);
+    depth = std::min(depth, above + SurfaceClosure<Dim>::least_depth);
+  }
+  return std::max(depth, SurfaceClosure<Dim>::least_depth);
+}
+
+template <int Dim>
+Vec<Dim> surface_normal(const PairList& near, std::span<const Vec<Dim>> asymmetry,
+                        std::span<const std::uint8_t> free_surface, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  Vec<Dim> sum;
+  if (free_surface[self]) sum += own_weight * asymmetry[self];
+  for (int k = near.begin(i); k < near.end(i); ++k) {
+    const auto j = static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]);
+    if (free_surface[j]) sum += near.weight[static_cast<std::size_t>(k)] * asymmetry[j];
+  }
+  const double size = norm(sum);
+  return size > 0.0 ? 1.0 / size * sum : sum;
+}
+
+template class SurfaceClosure<2>;
+template class SurfaceClosure<3>;
+template double surface_depth<2>(const PairList&, std::span<const Vec<2>>, std::span<const Vec<2>>,
+                                 std::span<const std::uint8_t>, double, int);
+template Vec<2> surface_normal<2>(const PairList&, std::span<const Vec<2>>, std::span<const std::uint8_t>, int);
+template Vec<3> surface_normal<3>(const PairList&, std::span<const Vec<3>>, std::span<const std::uint8_t>, int);
+template double surface_depth<3>(const PairList&, std::span<const Vec<3>>, std::span<const Vec<3>>,
+                                 std::span<const std::uint8_t>, double, int);
+
+}  // namespace impinge

@@ -1,0 +1,145 @@
+// The zero of the pressure outside the surface particles, on a lattice with a flat surface.
+
+#include "impinge/free_surface.hpp"
+
+#include <cmath>
+
+#include "cloud_with_pairs.hpp"
+#include "dimensions.hpp"
+
+namespace impinge {
+namespace {
+
+/// A lattice below a flat surface at 11 along the last axis; its top row is marked.
+template <class Dimension>
+class FreeSurface : public testing::Test {
+ protected:
+  static constexpr int Dim = Dimension::value;
+
+  FreeSurface() {
+    for (int i = 0; i < lattice_.particles.owned; ++i) {
+      asymmetry_.push_back(lattice_.asymmetry_of(i));
+      marked_.push_back(lattice_.particles.position[static_cast<std::size_t>(i)][Dim - 1] > 10.0);
+      // An asymmetry counts only where the surface is.
+      if (!marked_.back()) asymmetry_.back().component.fill(7.0);
+    }
+  }
+
+  int at_depth(double depth) const {
+    Vec<Dim> point;
+    point.component.fill(5.5);
+    point[Dim - 1] = 11.0 - depth;
+    return lattice_.at(point);
+  }
+  double depth_of(int i, double spacing = 1.0) const {
+    return surface_depth<Dim>(lattice_.far, lattice_.particles.position, asymmetry_, marked_, spacing, i);
+  }
+  Vec<Dim> normal_at(double depth) const {
+    return surface_normal<Dim>(lattice_.near, asymmetry_, marked_, at_depth(depth));
+  }
+
+  /// Sum of W over the lattice points beyond the surface, and of W d_g; `below`: of a particle at that depth.
+  static std::pair<double, double> missing(KernelType kernel, double below) {
+    double weight = 0.0, height = 0.0;
+    for (int x = -5; x <= 5; ++x) {
+      for (int z = Dim == 2 ? 0 : -5; z <= (Dim == 2 ? 0 : 5); ++z) {
+        for (double d = 0.5; d < 6.0; d += 1.0) {
+          const double r = std::hypot(x, z, below + d);
+          const double w = kernel == KernelType::singular ? SingularKernel::weight(r, far_radius)
+                                                          : NonSingularKernel::weight(r, far_radius);
+          weight += w;
+          height += w * d;
+        }
+      }
+    }
+    return {weight, height};
+  }
+
+  Cloud<Dim> lattice_{0.0};
+  std::vector<Vec<Dim>> asymmetry_;
+  std::vector<std::uint8_t> marked_;
+};
+TYPED_TEST_SUITE(FreeSurface, Dimensions);
+
+TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
+  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+    const Cloud<TestFixture::Dim> lattice(0.0, kernel);
+    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius, 1);
+    const auto pressure = [&](int i) {
+      return 11.0 - lattice.particles.position[static_cast<std::size_t>(i)][TestFixture::Dim - 1];
+    };
+    for (const double depth : {0.5, 1.5, 2.5, 3.5}) {
+      const int i = this->at_depth(depth);
+      double sum = -closure.weight(depth) * pressure(i);
+      for (int k = lattice.far.begin(i); k < lattice.far.end(i); ++k) {
+        const auto pair = static_cast<std::size_t>(k);
+        sum += lattice.far.weight[pair] * (pressure(lattice.far.index[pair]) - pressure(i));
+      }
+      EXPECT_NEAR(sum, 0.0, 1e-10) << "depth " << depth;
+      EXPECT_EQ(closure.weight(depth) > 0.0, depth < 3.51) << "depth " << depth;
+    }
+    EXPECT_EQ(closure.weight(4.1), 0.0);
+    EXPECT_EQ(closure.weight(std::numeric_limits<double>::infinity()), 0.0);
+    EXPECT_EQ(closure.weight(0.1), closure.weight(0.5));
+  }
+}
+
+TYPED_TEST(FreeSurface, ClosureIsInterpolatedBetweenTheRows) {
+  const SurfaceClosure<TestFixture::Dim> closure(KernelType::non_singular, far_radius, 1);
+  for (double depth = 0.5; depth < 4.0; depth += 0.037) {
+    const auto [weight, height] = this->missing(KernelType::non_singular, depth);
+    const double expected = weight + height / depth;
+    EXPECT_NEAR(closure.weight(depth), expected, 0.01 + 1e-3 * expected) << "depth " << depth;
+  }
+}
+
+TYPED_TEST(FreeSurface, ClosesAColumnAsAWhole) {
+  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius, 4);
+    for (const double depth : {0.5, 1.5, 2.5}) {
+      double expected = 0.0;
+      for (const int layer : {0, 1, 2, 3}) {
+        const auto [weight, height] = this->missing(kernel, depth + layer);
+        expected += weight + height / depth;
+      }
+      EXPECT_NEAR(closure.weight(depth), expected, 1e-10) << "depth " << depth;
+    }
+  }
+}
+
+TYPED_TEST(FreeSurface, DepthIsThatBelowAFlatSurface) {
+  for (const double depth : {0.5, 1.5, 2.5, 3.5, 4.5}) EXPECT_NEAR(this->depth_of(this->at_depth(depth)), depth, 1e-12);
+  EXPECT_NEAR(this->depth_of(this->at_depth(2.5), 0.5), 4.5, 1e-12);  // 2 m in spacings of 0.5 m, and half of one
+  EXPECT_EQ(this->depth_of(this->at_depth(5.5)), std::numeric_limits<double>::infinity());
+  std::fill(this->marked_.begin(), this->marked_.end(), std::uint8_t{0});
+  EXPECT_EQ(this->depth_of(this->at_depth(1.5)), std::numeric_limits<double>::infinity());
+}
+
+TYPED_TEST(FreeSurface, DepthIsThatBelowTheNearestPlane) {
+  const auto top = static_cast<std::size_t>(this->at_depth(0.5));
+  const int below = this->at_depth(2.5);
+  this->asymmetry_[top] *= 5.0;  // only the direction counts
+  EXPECT_NEAR(this->depth_of(below), 2.5, 1e-12);
+  this->asymmetry_[top][0] += std::sqrt(3.0) * norm(this->asymmetry_[top]);  // 60 degrees from the vertical
+  EXPECT_NEAR(this->depth_of(below), 1.5, 1e-12);
+  this->asymmetry_[top] *= -1.0;  // far outside
+  EXPECT_EQ(this->depth_of(below), 0.5);
+  this->asymmetry_[top] *= 0.0;  // none
+  EXPECT_NEAR(this->depth_of(below), 2.5, 1e-12);
+}
+
+TYPED_TEST(FreeSurface, NormalIsTheUnitVectorOutOfTheFluid) {
+  Vec<TestFixture::Dim> up;
+  up[TestFixture::Dim - 1] = 1.0;
+  for (const double depth : {0.5, 1.5, 2.5}) EXPECT_NEAR(norm(this->normal_at(depth) - up), 0.0, 1e-14) << depth;
+  EXPECT_EQ(this->normal_at(3.5), Vec<TestFixture::Dim>{});
+  Vec<TestFixture::Dim>& own = this->asymmetry_[static_cast<std::size_t>(this->at_depth(0.5))];
+  own[0] = own[TestFixture::Dim - 1];
+  const Vec<TestFixture::Dim> tilted = this->normal_at(0.5);
+  EXPECT_NEAR(norm(tilted), 1.0, 1e-14);
+  EXPECT_GT(tilted[0], this->normal_at(1.5)[0]);  // its own counts most
+  EXPECT_GT(this->normal_at(1.5)[0], 0.01);
+}
+
+}  // namespace
+}  // namespace impinge

@@ -1,0 +1,79 @@
+// Small matrices, and images of points.
+
+#include "impinge/types.hpp"
+
+#include <random>
+
+#include "dimensions.hpp"
+
+namespace impinge {
+namespace {
+
+template <class Dimension>
+class Types : public testing::Test {
+ protected:
+  static constexpr int Dim = Dimension::value;
+
+  Vec<Dim> vector() {
+    Vec<Dim> result;
+    for (double& x : result.component) x = uniform_(random_);
+    return result;
+  }
+  Matrix<Dim> matrix() {
+    Matrix<Dim> result;
+    for (Vec<Dim>& row : result.row) row = vector();
+    return result;
+  }
+
+ private:
+  std::mt19937 random_{1};
+  std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
+};
+TYPED_TEST_SUITE(Types, Dimensions);
+
+TYPED_TEST(Types, AMatrixTimesItsAdjugateIsTheDeterminant) {
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto m = this->matrix();
+    const auto v = this->vector();
+    EXPECT_NEAR(norm(m * (adjugate(m) * v) - determinant(m) * v), 0.0, 1e-14);
+    EXPECT_NEAR(norm(adjugate(m) * (m * v) - determinant(m) * v), 0.0, 1e-14);
+  }
+}
+
+TYPED_TEST(Types, ADeterminantIsAVolume) {
+  EXPECT_EQ(determinant(Matrix<TestFixture::Dim>::identity()), 1.0);
+  EXPECT_EQ(determinant(2.0 * Matrix<TestFixture::Dim>::identity()), TestFixture::Dim == 2 ? 4.0 : 8.0);
+  auto m = this->matrix();
+  const double volume = determinant(m);
+  std::swap(m.row[0], m.row[1]);
+  EXPECT_NEAR(determinant(m), -volume, 1e-15);
+  m.row[0] = -3.0 * m.row[1];
+  EXPECT_NEAR(determinant(m), 0.0, 1e-15);
+}
+
+TYPED_TEST(Types, AProductOfVectorsMapsAlongTheFirst) {
+  const auto m = this->matrix();
+  const auto a = this->vector(), b = this->vector(), v = this->vector();
+  auto sum = m;
+  sum.add_product(a, b);
+  EXPECT_NEAR(norm(sum * v - (m * v + dot(b, v) * a)), 0.0, 1e-15);
+}
+
+TYPED_TEST(Types, AnImageIsReflectedThenShifted) {
+  const auto r = this->vector();
+  Image<TestFixture::Dim> image;
+  EXPECT_FALSE(image.reflects());
+  EXPECT_EQ(image.of_position(r), r);
+  image.shift[0] = 3.0;
+  EXPECT_FALSE(image.reflects());
+  EXPECT_EQ(image.of_position(r)[0], r[0] + 3.0);
+  EXPECT_EQ(image.of_direction(r), r);
+  image.sign[0] = -1.0;
+  EXPECT_TRUE(image.reflects());
+  EXPECT_EQ(image.of_position(r)[0], 3.0 - r[0]);
+  EXPECT_EQ(image.of_direction(r)[0], -r[0]);
+  EXPECT_EQ(image.of_position(r)[1], r[1]);
+}
+
+}  // namespace
+}  // namespace impinge
