@@ -10,6 +10,7 @@ cd "$(dirname "$0")/.."
 . jobs/common.sh
 
 resolution=${1:-20}
+ranks=${2:-2}
 if ! [[ $resolution =~ ^[1-9][0-9]*$ ]]; then
   sed -n '2,8s/^# //p' "$0" >&2
   exit 2
@@ -22,10 +23,9 @@ ablate() {
   local name=$1 words=()
   shift
   for setting in "$@"; do words+=(--set "$setting"); done
-  measure_jet "${RANKS:-2}" "$root/$name" input/jet.toml --set "particles.spacing=$(quotient 0.4 "$resolution")" \
+  measure_jet "$ranks" "$root/$name" input/jet.toml --set "particles.spacing=$(quotient 0.4 "$resolution")" \
     --set "time.dt=$(quotient 0.064 "$resolution")" "${words[@]}"
 }
-RANKS=${2:-2}
 ablate 0-consistent
 ablate 1-walls-columns walls.model=columns
 ablate 2-walls-particles walls.model=particles

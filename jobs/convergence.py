@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Table (Markdown) and figure of the convergence study. Usage: convergence.py DIR
+"""Table (Markdown) and figures of the convergence study. Usage: convergence.py DIR
 
-Reads DIR/<scheme>-<start>-<angle>-<H/dp>/validation/validation.json, prints the table, writes DIR/error.png. Film
-thicknesses are over those of the exact jet measured alike.
+Reads DIR/<scheme>-<start>-<angle>-<H/dp>/ (validation and history), prints the table, writes DIR/error.png and, of the
+60 degree jet, DIR/force.png, the force on the plate step by step. Film thicknesses are over those of the exact jet
+measured alike.
 """
 
+import csv
 import json
 import math
 import pathlib
@@ -41,7 +43,7 @@ def read(root):
                 values[name] = value(report["metrics"], report["analytic"])
             except TypeError:  # a metric is null
                 values[name] = None
-        runs[(*parts[:2], int(parts[2]), int(parts[3]))] = {"status": report["status"], **values}
+        runs[(*parts[:2], float(parts[2]), int(parts[3]))] = {"status": report["status"], **values}
     return dict(sorted(runs.items()))
 
 
@@ -52,7 +54,7 @@ def print_table(runs):
         cells = ["-" if values[name] is None else f"{values[name]:.3f}" for name in METRICS]
         if values["status"] != "finished":
             cells[0] = values["status"]
-        print(f"| {scheme} | {start} | {angle} | {resolution} | " + " | ".join(cells) + " |")
+        print(f"| {scheme} | {start} | {angle:g} | {resolution} | " + " | ".join(cells) + " |")
 
 
 def slope(points):
@@ -67,7 +69,7 @@ def draw(runs, path):
     figure, panels = plt.subplots(1, len(ERRORS), layout="constrained", figsize=(13, 4.5), dpi=110)
     for axes, (metric, title) in zip(panels, ERRORS.items()):
         for scheme, line in (("consistent", "-"), ("paper", ":")):
-            for angle, colour in ((30, "tab:green"), (60, "tab:blue"), (90, "tab:red")):
+            for k, angle in enumerate(sorted({key[2] for key in runs})):
                 points = [
                     (key[3], values[metric])
                     for key, values in runs.items()
@@ -75,14 +77,33 @@ def draw(runs, path):
                 ]
                 if not points:
                     continue
-                label = f"{scheme}, {angle}°" + (f", slope {slope(points):.1f}" if len(points) > 1 else "")
-                axes.loglog([1 / n for n, _ in points], [e for _, e in points], line, color=colour, marker="o", label=label)
+                label = f"{scheme}, {angle:g}°" + (f", slope {slope(points):.1f}" if len(points) > 1 else "")
+                axes.loglog([1 / n for n, _ in points], [e for _, e in points], line, color=f"C{k}", marker="o", label=label)
         ticks = sorted({key[3] for key in runs})
         axes.set_xticks([1 / n for n in ticks], [f"1/{n}" for n in ticks], minor=False)
         axes.minorticks_off()
         axes.set(xlabel="dp / H", title=f"relative error of the {title}")
         axes.grid(alpha=0.3)
         axes.legend(fontsize=7)
+    figure.savefig(path)
+
+
+def draw_force(root, runs, path):
+    """The last half second of both schemes at the finest resolution that both have."""
+    common = [key[3] for key in runs if key[:3] == ("paper", "impact", 60) and ("consistent", *key[1:]) in runs]
+    if not common:
+        return
+    figure, axes = plt.subplots(layout="constrained", figsize=(9, 3.5), dpi=110)
+    for scheme, colour in (("paper", "tab:orange"), ("consistent", "tab:blue")):
+        folder = root / f"{scheme}-impact-60-{max(common)}"
+        force = json.loads((folder / "validation/validation.json").read_text())["analytic"]["normal_force"]
+        with open(next(folder.glob("*_history.csv")), newline="") as file:
+            lines = [(float(line["t"]), float(line["plate_force"]) / force) for line in csv.DictReader(file)]
+        lines = [line for line in lines if line[0] > lines[-1][0] - 0.5]
+        axes.plot(*zip(*lines), lw=0.7, color=colour, label=scheme)
+    axes.axhline(1.0, color="0.3", lw=0.8, ls="--", label="analytic")
+    axes.set(xlabel="t [s]", ylabel="force on the plate / analytic", title=f"60°, H/dp = {max(common)}, every step")
+    axes.legend()
     figure.savefig(path)
 
 
@@ -93,6 +114,7 @@ def main():
         sys.exit(f"{sys.argv[0]}: no validation.json below {root}")
     print_table(runs)
     draw(runs, root / "error.png")
+    draw_force(root, runs, root / "force.png")
 
 
 if __name__ == "__main__":

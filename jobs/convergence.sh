@@ -6,8 +6,8 @@
 #   H/DP   particles across the jet, multiples of 5; default 20 40 80 (hours on two cores; 20 alone: ten minutes)
 # Variables: RANKS (default 2), SCHEMES (default "consistent paper"), ANGLES (default "30 60 90"), STARTS (default "impact
 # steady"). dt = 0.16 dp/U with the consistent scheme, 0.04 dp/U with the paper's.
-# Output: output/convergence/<scheme>-<start>-<angle>-<H/dp>/, table.md and error.png beside them. A run that is finished
-# is not run again.
+# Output: output/convergence/<scheme>-<start>-<angle>-<H/dp>/, table.md, error.png and force.png beside them. A run that
+# is finished is not run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . jobs/common.sh
@@ -32,7 +32,7 @@ for resolution in "${resolutions[@]}"; do
       [ "$start" = impact ] || end=2.5
       for angle in ${ANGLES:-30 60 90}; do
         measure_jet "${RANKS:-2}" "$root/$scheme-$start-$angle-$resolution" input/jet.toml --set "scheme=$scheme" \
-          --set "jet.start=$start" --set "jet.angle=$angle.0" --set "time.end=$end" \
+          --set "jet.start=$start" --set "jet.angle=$angle" --set "time.end=$end" \
           --set "particles.spacing=$(quotient 0.4 "$resolution")" --set "time.dt=$(quotient $step "$resolution")"
       done
     done

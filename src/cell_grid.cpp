@@ -119,8 +119,8 @@ Vec<Dim> CellGrid<Dim>::wrapped(Vec<Dim> position, Image<Dim>& image) const {
       position[k] = 2.0 * low_[k] - position[k];
     }
     if (edges_[axis].high == Edge::mirror && is_beyond()) {
-      image.sign[k] = -1.0;
-      image.shift[k] = 2.0 * (low_[k] + length);
+      image.sign[k] *= -1.0;
+      image.shift[k] = 2.0 * (low_[k] + length) - image.shift[k];
       position[k] = 2.0 * (low_[k] + length) - position[k];
       while (is_beyond()) position[k] = std::nextafter(position[k], low_[k]);
     }

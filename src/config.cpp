@@ -28,6 +28,7 @@
 #include <variant>
 
 #include "impinge/analytic_jet.hpp"
+#include "impinge/lattice.hpp"
 
 namespace impinge {
 namespace {
@@ -123,9 +124,9 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
        "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
        "1 - gamma weighs the divergence"},
-      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.5; paper: 0.0",
-       "speed C in largest fluid speeds at which density errors are corrected: gamma = (C u_max dt/dp)^2; 0: "
-       "pressure.gamma"},
+      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.5; paper: 0.0; 0.0 where gamma is given",
+       "speed C in largest fluid speeds at which density errors are corrected: gamma = (C u_max dt/dp)^2, at "
+       "most 1; 0: pressure.gamma"},
       {IMPINGE_KEY(pressure.corrected_divergence),
        every,
        "",
@@ -164,8 +165,8 @@ const std::vector<Key>& keys() {
        "p = 0 half a spacing outside the surface particles instead of at them"},
 
       {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "2.0; paper: 0.0",
-       "particles move by this times the asymmetry F and the Courant number u_max dt/dp each step, along the free "
-       "surface only; 0: they do not"},
+       "particles drift by this times the asymmetry F and the Courant number u_max dt/dp each step, at most by 0.1 dp, "
+       "not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
        "",
@@ -178,7 +179,8 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(collision.restitution), every, "", from_to(0, 1), "", "coefficient of restitution of a collision"},
 
       {IMPINGE_KEY(time.end), every, "s", positive, required, "time at which the run ends"},
-      {IMPINGE_KEY(time.dt), every, "s", positive, required, "largest time step"},
+      {IMPINGE_KEY(time.dt), every, "s", positive, required,
+       "largest time step; the first has at most cfl = 0.05, and a step at most 1.1 times the last"},
       {IMPINGE_KEY(time.cfl), every, "", above_to(0, 1), "", "the time step is at most cfl dp / |u|max"},
       {IMPINGE_KEY(time.max_speed), every, "m/s", positive,
        "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height) or periodic_box.shear_speed",
@@ -651,7 +653,7 @@ void CaseReader::derive_scheme() {
     if (!given(name)) value = by_scheme;
   };
   derive("walls.model", config_.walls.model, WallModel::mirror);
-  derive("pressure.density_speed", config_.pressure.density_speed, 0.5);
+  if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.5);
   derive("pressure.corrected_divergence", config_.pressure.corrected_divergence, true);
   derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);
   derive("free_surface.zero_outside", config_.free_surface.zero_outside, true);
@@ -761,6 +763,13 @@ void CaseReader::complete() {
     if (usable({"tank.size"})) check_count(product(c.tank.size));
     check_multiples("tank.size", {c.tank.size.data(), dimension});
     check_multiples("tank.fluid_height", {&c.tank.fluid_height, 1});
+    if (usable({"tank.size", "particles.spacing", "kernel.laplacian_radius"}) && c.walls.model == WallModel::mirror) {
+      const double least = std::max<double>(c.kernel.laplacian_radius, wall_layers) * c.particles.spacing;
+      if (std::ranges::any_of(std::span(c.tank.size.data(), dimension), [&](double x) { return x < least; })) {
+        mistake("tank.size",
+                fmt::format("mirrors nearer to each other than the kernel reaches; allowed: >= {:.6g} (m)", least));
+      }
+    }
     if (usable({"tank.size", "tank.fluid_height"}) && c.tank.fluid_height > c.tank.size[dimension - 1]) {
       mistake("tank.fluid_height",
               fmt::format("higher than the walls; allowed: (0, {}] (m)", number_text(c.tank.size[dimension - 1])));

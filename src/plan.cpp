@@ -80,8 +80,7 @@ void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, P
 template <int Dim>
 Plan plan_run(MPI_Comm comm, const Config& config, int ranks) {
   const auto geometry = make_geometry<Dim>(config);
-  const CellGrid<Dim> cells(geometry->bounds(), geometry->edges(),
-                            config.kernel.laplacian_radius * config.particles.spacing);
+  const CellGrid<Dim> cells(geometry->bounds(), geometry->edges(), cell_reach(config));
   const CellCounts counts = count_particles<Dim>(comm, cells, *geometry);
   // One process partitions: PTScotch waits for ever where three are to make more than three parts.
   std::vector<int> owner(counts.work.size());

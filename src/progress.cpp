@@ -34,8 +34,8 @@ void Progress::update(const StepReport& report) {
 std::string Progress::line(const StepReport& report, double end, double seconds_left) {
   return fmt::format("step {}  t {:.4f}/{:.4f} s ({:.0f} %)  dt {:.2e} s ({})  {} particles  {} iterations  {} left",
                      report.step, report.time, end, 100.0 * report.time / end, report.dt,
-                     step_limit_names[static_cast<std::size_t>(report.limit)], report.particles, report.pressure.iterations,
-                     duration_text(seconds_left));
+                     step_limit_names[static_cast<std::size_t>(report.limit)], report.particles,
+                     report.pressure.iterations, duration_text(seconds_left));
 }
 
 }  // namespace impinge

@@ -38,11 +38,6 @@ constexpr double first_courant = 0.05;  // of the first step: an impact may be a
 constexpr double most_growth = 1.1;     // of dt from step to step
 constexpr double largest_shift = 0.1;   // of a step [dp]
 
-// Of the background cells: the columns of a wall stand in one cell each.
-double reach_of(const Config& config) {
-  return std::max<double>(config.kernel.laplacian_radius, wall_layers) * config.particles.spacing;
-}
-
 bool is_mirrored(const Config& config) { return config.walls.model == WallModel::mirror; }
 bool has_columns(const Config& config) { return config.walls.model == WallModel::columns; }
 
@@ -55,6 +50,10 @@ constexpr std::size_t particle_bytes = sizeof(ParticleRecord<Dim>) + sizeof(doub
 bool moves(ParticleType type) { return type == ParticleType::fluid; }
 
 }  // namespace
+
+double cell_reach(const Config& config) {
+  return std::max<double>(config.kernel.laplacian_radius, wall_layers) * config.particles.spacing;
+}
 
 SolveError::SolveError(std::int64_t step, std::string phase, const std::string& reason)
     : std::runtime_error(fmt::format("step {}, phase {}: {}", step, phase, reason)),
@@ -70,7 +69,7 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
       laplacian_factor_(2.0 * Dim /
                         (far_sums_.number_density * far_sums_.lambda * std::pow(config.particles.spacing, 2))),
       geometry_(make_geometry<Dim>(config)),
-      domain_(comm, geometry_->bounds(), geometry_->edges(), reach_of(config), config.parallel.partitioner),
+      domain_(comm, geometry_->bounds(), geometry_->edges(), cell_reach(config), config.parallel.partitioner),
       search_(domain_.sorting_cells(), Domain<Dim>::cell_parts, config.kernel.type,
               config.kernel.radius * config.particles.spacing,
               config.kernel.laplacian_radius * config.particles.spacing, is_mirrored(config)),
@@ -139,14 +138,16 @@ void Simulation<Dim>::accelerate() {
     if (moves(particles_.type[i])) particles_.velocity[i] += velocity_change_[i];
 }
 
-// A viscous fluid does not slip: its images move against it.
+// A viscous fluid does not slip: its images move against it; those of two mirrors, in a corner, with it.
 template <int Dim>
 void Simulation<Dim>::hold_to_walls() {
   if (!is_mirrored(config_)) return;
   for (auto k = static_cast<std::size_t>(particles_.owned); k < particles_.velocity.size(); ++k) {
     Image<Dim> image;
     domain_.cells().wrapped(particles_.position[k], image);
-    if (image.reflects()) particles_.velocity[k] = -1.0 * image.of_direction(particles_.velocity[k]);
+    double parity = 1.0;
+    for (int axis = 0; axis < Dim; ++axis) parity *= image.sign[axis];
+    if (image.reflects()) particles_.velocity[k] = parity * image.of_direction(particles_.velocity[k]);
   }
 }
 
@@ -406,8 +407,11 @@ void Simulation<Dim>::correct() {
                              : pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
                                                       particles_.type, wall_normal_, n0, i));
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
+  displacement_.resize(static_cast<std::size_t>(particles_.owned));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];
+    displacement_[i] = report_.dt * velocity_change_[i];
+  }
 }
 
 template <int Dim>
@@ -428,12 +432,9 @@ void Simulation<Dim>::shift() {
   const double scale = config_.shifting.coefficient * report_.max_speed * report_.dt;
   const bool corrects = scale > 0.0 && config_.shifting.correct_velocity;
   if (corrects) domain_.refresh_directions(particles_.velocity, particles_.owned);
-  displacement_.resize(static_cast<std::size_t>(particles_.owned));
+  velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
-    Vec<Dim>& change = velocity_change_[self];
-    displacement_[self] = report_.dt * change;
-    change = {};
     if (scale == 0.0 || !moves(particles_.type[self]) || is_splash(self)) continue;
     const Vec<Dim> normal = surface_normal<Dim>(search_.near(), asymmetry_, particles_.free_surface, i);
     Vec<Dim> delta = scale * asymmetry_[self];
@@ -441,8 +442,8 @@ void Simulation<Dim>::shift() {
     if (const double length = norm(delta); length > largest) delta *= largest / length;
     displacement_[self] += delta;
     if (corrects)
-      change = velocity_change_along<Dim>(search_.near(), particles_.position, particles_.velocity, particles_.type,
-                                          delta, near_sums_.number_density, i);
+      velocity_change_[self] = velocity_change_along<Dim>(search_.near(), particles_.position, particles_.velocity,
+                                                          particles_.type, delta, near_sums_.number_density, i);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.position[i] += displacement_[i];
@@ -504,10 +505,13 @@ UnitCosts Simulation<Dim>::unit_costs(const Config& config) {
   const int far = lattice_sums<Dim>(config.kernel.type, config.kernel.laplacian_radius).neighbours;
   constexpr double pair = sizeof(int) + sizeof(double);
   constexpr double entry = sizeof(PetscInt) + sizeof(double);
-  // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice.
+  // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice; the
+  // consistent scheme also surface marks, asymmetry and velocity.
   double traffic = sizeof(typename Domain<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
   if (config.fluid.viscosity > 0.0) traffic += sizeof(Vec<Dim>);
   if (config.collision.distance > 0.0) traffic += 2.0 * sizeof(Vec<Dim>);
+  if (config.free_surface.zero_outside || config.shifting.coefficient > 0.0) traffic += sizeof(Vec<Dim>) + 1.0;
+  if (config.shifting.coefficient > 0.0 && config.shifting.correct_velocity) traffic += sizeof(Vec<Dim>);
   return {.particle_memory = particle_bytes<Dim> + 2.0 * sizeof(int) + sizeof(Vec<Dim>),  // with the cells' order
           .row_memory = (near + far) * pair + far * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
           .cell_memory = 3.0 * sizeof(int),

@@ -20,7 +20,7 @@ struct ParticleRecord {
 };
 
 /// Structure of arrays. Entries [0, owned) belong to this rank; entries [owned, size()) are the halo: copies of
-/// other ranks' particles (or periodic images) within reach. All arrays have length size().
+/// other ranks' particles (or periodic and mirror images) within reach. All arrays have length size().
 template <int Dim>
 struct Particles {
   int owned = 0;
@@ -31,7 +31,7 @@ struct Particles {
   std::vector<double> number_density;    ///< n [-]; owned entries are valid
   std::vector<std::int64_t> id;          ///< never used twice in a run
   std::vector<ParticleType> type;
-  std::vector<std::uint8_t> free_surface;  ///< 1 where p = 0 is imposed by the free-surface criterion
+  std::vector<std::uint8_t> free_surface;  ///< 1 where the free-surface criterion holds
 
   int size() const { return static_cast<int>(position.size()); }
 

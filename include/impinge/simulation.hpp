@@ -63,6 +63,10 @@ struct UnitCosts {
   double halo_traffic;     ///< sent per halo particle and step, but for the iterations of the solver [bytes]
 };
 
+/// Least edge of a run's background cells [m]: the Laplacian's radius, and the depth of a wall, whose columns stand in
+/// one cell each.
+double cell_reach(const Config& config);
+
 /// The MPS method on the particles of all ranks. Every public function that is not const is collective.
 template <int Dim>
 class Simulation {
@@ -150,7 +154,7 @@ class Simulation {
   std::vector<double> surface_weight_;  // empty: p = 0 at the surface particles
   std::vector<double> source_;
   std::vector<Vec<Dim>> velocity_change_;
-  std::vector<Vec<Dim>> displacement_;
+  std::vector<Vec<Dim>> displacement_;  // by the correction
 };
 
 }  // namespace impinge

@@ -129,7 +129,7 @@ struct Image {
 enum class ParticleType : std::uint8_t {
   fluid = 0,  ///< moves freely, carries a pressure unknown
   inlet = 1,  ///< rigid buffer that moves at the jet's speed, p = 0
-  wall = 2,   ///< first row of a wall, carries a pressure unknown
+  wall = 2,   ///< first row of a wall, with a pressure unknown; on a mirror: measures the pressure
   ghost = 3   ///< rows behind the wall row that complete number density and divergence
 };
 
