@@ -132,6 +132,22 @@ TEST(Config, TheSchemeSetsDefaults) {
   EXPECT_EQ(different, 1 + std::size(scheme_keys));
 }
 
+TEST(Config, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
+  EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_speed, 0.0);
+  const Config both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");
+  EXPECT_EQ(both.pressure.density_speed, 0.3);
+  EXPECT_EQ(both.pressure.gamma, 0.02);
+}
+
+TEST(Config, MirrorsAreAtLeastAKernelApart) {
+  EXPECT_EQ(
+      mistakes_in("tank.size = [0.04, 0.3]", tank_base),
+      Texts{"case.toml:1: tank.size = [0.04, 0.3]: mirrors nearer to each other than the kernel reaches; allowed: "
+            ">= 0.0401 (m)"});
+  EXPECT_EQ(parse("tank.size = [0.05, 0.3]", tank_base).tank.size[0], 0.05);
+  EXPECT_EQ(parse("tank.size = [0.04, 0.3]\nscheme = \"paper\"", tank_base).tank.size[0], 0.04);
+}
+
 TEST(Config, GivenKeysWinOverTheScheme) {
   for (const std::string scheme : {"consistent", "paper"}) {
     const std::string other = scheme == "paper" ? "consistent" : "paper";
