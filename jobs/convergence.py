@@ -69,7 +69,7 @@ def draw(runs, path):
     figure, panels = plt.subplots(1, len(ERRORS), layout="constrained", figsize=(13, 4.5), dpi=110)
     for axes, (metric, title) in zip(panels, ERRORS.items()):
         for scheme, line in (("consistent", "-"), ("paper", ":")):
-            for k, angle in enumerate(sorted({key[2] for key in runs})):
+            for k, angle in enumerate(sorted({key[2] for key in runs if key[1] == "impact"})):
                 points = [
                     (key[3], values[metric])
                     for key, values in runs.items()
@@ -84,7 +84,8 @@ def draw(runs, path):
         axes.minorticks_off()
         axes.set(xlabel="dp / H", title=f"relative error of the {title}")
         axes.grid(alpha=0.3)
-        axes.legend(fontsize=7)
+        if axes.lines:
+            axes.legend(fontsize=7)
     figure.savefig(path)
 
 
