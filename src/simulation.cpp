@@ -245,7 +245,7 @@ void Simulation<Dim>::measure_density() {
   const bool needs_asymmetry = limits.zero_outside || config_.shifting.coefficient > 0.0;
   role_.assign(size, PressureRole::excluded);
   asymmetry_.assign(size, {});
-  correction_.assign(static_cast<std::size_t>(particles_.owned), Matrix<Dim>::identity());
+  if (corrects) correction_.assign(static_cast<std::size_t>(particles_.owned), Matrix<Dim>::identity());
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     const ParticleType type = particles_.type[self];
