@@ -49,15 +49,16 @@ double SurfaceClosure<Dim>::weight(double depth) const {
 }
 
 template <int Dim>
-double surface_depth(const PairList& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,
+double surface_depth(const PairRow& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,
                      std::span<const std::uint8_t> free_surface, double spacing, int i) {
   const auto self = static_cast<std::size_t>(i);
   if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
   double depth = std::numeric_limits<double>::infinity();
-  for (int k = far.begin(i); k < far.end(i); ++k) {
-    const auto j = static_cast<std::size_t>(far.index[static_cast<std::size_t>(k)]);
+  for (const int neighbour : far.index) {
+    const auto j = static_cast<std::size_t>(neighbour);
+    if (!free_surface[j]) continue;
     const double size = norm(asymmetry[j]);
-    if (!free_surface[j] || size == 0.0) continue;
+    if (size == 0.0) continue;
     const double above = dot(position[j] - position[self], asymmetry[j]) / (size * spacing);
     depth = std::min(depth, above + SurfaceClosure<Dim>::least_depth);
   }
@@ -80,11 +81,11 @@ Vec<Dim> surface_normal(const PairList& near, std::span<const Vec<Dim>> asymmetr
 
 template class SurfaceClosure<2>;
 template class SurfaceClosure<3>;
-template double surface_depth<2>(const PairList&, std::span<const Vec<2>>, std::span<const Vec<2>>,
+template double surface_depth<2>(const PairRow&, std::span<const Vec<2>>, std::span<const Vec<2>>,
                                  std::span<const std::uint8_t>, double, int);
 template Vec<2> surface_normal<2>(const PairList&, std::span<const Vec<2>>, std::span<const std::uint8_t>, int);
 template Vec<3> surface_normal<3>(const PairList&, std::span<const Vec<3>>, std::span<const std::uint8_t>, int);
-template double surface_depth<3>(const PairList&, std::span<const Vec<3>>, std::span<const Vec<3>>,
+template double surface_depth<3>(const PairRow&, std::span<const Vec<3>>, std::span<const Vec<3>>,
                                  std::span<const std::uint8_t>, double, int);
 
 }  // namespace impinge

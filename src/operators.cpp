@@ -160,10 +160,11 @@ Vec<Dim> pressure_gradient(const PairList& near, std::span<const Vec<Dim>> posit
 }
 
 template <int Dim>
-Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> velocity, double factor, int i) {
+Vec<Dim> velocity_laplacian(const PairRow& far, std::span<const Vec<Dim>> velocity, double factor, int i) {
   const Vec<Dim> own = velocity[static_cast<std::size_t>(i)];
   Vec<Dim> sum;
-  for_pairs(far, i, [&](std::size_t j, double weight) { sum += weight * (velocity[j] - own); });
+  for (std::size_t k = 0; k < far.index.size(); ++k)
+    sum += far.weight[k] * (velocity[static_cast<std::size_t>(far.index[k])] - own);
   return factor * sum;
 }
 
@@ -201,7 +202,7 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
                                                std::span<const ParticleType>, const Vec<Dim>&, double, int);           \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \
                                            std::span<const ParticleType>, std::span<const Vec<Dim>>, double, int);     \
-  template Vec<Dim> velocity_laplacian<Dim>(const PairList&, std::span<const Vec<Dim>>, double, int);                  \
+  template Vec<Dim> velocity_laplacian<Dim>(const PairRow&, std::span<const Vec<Dim>>, double, int);                   \
   template Vec<Dim> collision<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,              \
                                    std::span<const ParticleType>, std::span<const Vec<Dim>>, double, double, double,   \
                                    int);

@@ -130,9 +130,10 @@ void Simulation<Dim>::accelerate() {
   if (nu > 0.0) {
     domain_.refresh_directions(particles_.velocity, particles_.owned);
     hold_to_walls();
-    for (int i = 0; i < particles_.owned; ++i)
+    search_.for_far_rows([&](int i, const PairRow& row) {
       velocity_change_[static_cast<std::size_t>(i)] +=
-          nu * report_.dt * velocity_laplacian<Dim>(search_.far(), particles_.velocity, laplacian_factor_, i);
+          nu * report_.dt * velocity_laplacian<Dim>(row, particles_.velocity, laplacian_factor_, i);
+    });
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
     if (moves(particles_.type[i])) particles_.velocity[i] += velocity_change_[i];
@@ -267,7 +268,6 @@ void Simulation<Dim>::measure_density() {
   domain_.halo().refresh(role_, particles_.owned);
   if (corrects || needs_asymmetry) domain_.halo().refresh(particles_.free_surface, particles_.owned);
   if (needs_asymmetry) domain_.refresh_directions(asymmetry_, particles_.owned);
-  if (limits.zero_outside) find_surface_weights();
 }
 
 template <int Dim>
@@ -275,17 +275,15 @@ bool Simulation<Dim>::is_splash(std::size_t i) const {
   return particles_.number_density[i] < splash_density * near_sums_.number_density;
 }
 
+// Of p = 0 beyond the surface, on the diagonal of a particle's row.
 template <int Dim>
-void Simulation<Dim>::find_surface_weights() {
-  surface_weight_.assign(static_cast<std::size_t>(particles_.owned), 0.0);
-  for (int i = 0; i < particles_.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (role_[self] != PressureRole::unknown) continue;
-    const double depth = surface_depth<Dim>(search_.far(), particles_.position, asymmetry_, particles_.free_surface,
-                                            config_.particles.spacing, i);
-    const bool column = has_columns(config_) && particles_.type[self] == ParticleType::wall;
-    surface_weight_[self] = (column ? column_closure_ : closure_).weight(depth);
-  }
+double Simulation<Dim>::surface_weight(int i, const PairRow& far) const {
+  const auto self = static_cast<std::size_t>(i);
+  if (role_[self] != PressureRole::unknown) return 0.0;
+  const double depth =
+      surface_depth<Dim>(far, particles_.position, asymmetry_, particles_.free_surface, config_.particles.spacing, i);
+  const bool column = has_columns(config_) && particles_.type[self] == ParticleType::wall;
+  return (column ? column_closure_ : closure_).weight(depth);
 }
 
 // Gravity acts on an image as on its original, so that its velocity is the mirrored one but for dt g, and a pressure
@@ -306,8 +304,7 @@ void Simulation<Dim>::weigh_images() {
   }
 }
 
-// (1 - gamma) rho/dt div u* - gamma rho/dt^2 (n* - n0)/n0 (paper eq. 8), for a column the sum over its particles, less
-// the flux that the images' weight makes.
+// (1 - gamma) rho/dt div u* - gamma rho/dt^2 (n* - n0)/n0 (paper eq. 8), for a column the sum over its particles.
 template <int Dim>
 void Simulation<Dim>::find_sources() {
   const double n0 = near_sums_.number_density;
@@ -332,18 +329,6 @@ void Simulation<Dim>::find_sources() {
     const double crowding = ghost || particles_.free_surface[self] ? 0.0 : (particles_.number_density[self] - n0) / n0;
     source_[unknown] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
   }
-  if (image_pressure_.empty()) return;
-  const PairList& far = search_.far();
-  for (int i = 0; i < particles_.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (role_[self] != PressureRole::unknown) continue;
-    for (int k = far.begin(i); k < far.end(i); ++k) {
-      const int image = far.index[static_cast<std::size_t>(k)] - particles_.owned;
-      if (image < 0) continue;
-      source_[self] -= laplacian_factor_ * far.weight[static_cast<std::size_t>(k)] *
-                       image_pressure_[static_cast<std::size_t>(image)];
-    }
-  }
 }
 
 // lap p = source.
@@ -353,14 +338,29 @@ void Simulation<Dim>::solve_pressure() {
     const LogStage log(stage(assembling));
     weigh_images();
     find_sources();
-    const PressureEquation equation{
-        search_.far(), role_, domain_.rows(), source_, laplacian_factor_, far_sums_.number_density, surface_weight_};
-    pressure_solver_.assemble(equation, domain_.halo());
+    if (config_.free_surface.zero_outside) surface_weight_.resize(static_cast<std::size_t>(particles_.owned));
+    const auto for_rows = [&](const auto& use) {
+      search_.for_far_rows([&](int i, const PairRow& row) {
+        if (!surface_weight_.empty()) surface_weight_[static_cast<std::size_t>(i)] = surface_weight(i, row);
+        use(i, row);
+      });
+    };
+    pressure_solver_.assemble({.for_rows = for_rows,
+                               .role = role_,
+                               .row = domain_.rows(),
+                               .source = source_,
+                               .factor = laplacian_factor_,
+                               .n0 = far_sums_.number_density,
+                               .usual_pairs = far_sums_.neighbours,
+                               .surface = surface_weight_,
+                               .excess = image_pressure_},
+                              domain_.halo());
     if (two_level_) {
       const LogStage log_set_up(stage(preconditioning));
       if (std::exchange(partitions_seen_, domain_.partitions()) != domain_.partitions())
         two_level_->set_owners(domain_.owners());
-      two_level_->update(equation, particles_.position, pressure_solver_.diagonal(), report_.pressure.iterations);
+      two_level_->update(pressure_solver_.rows(), role_, particles_.position, domain_.halo(),
+                         report_.pressure.iterations);
       two_level_->attach(pressure_solver_.preconditioner());
     }
   }
@@ -513,7 +513,7 @@ UnitCosts Simulation<Dim>::unit_costs(const Config& config) {
   if (config.free_surface.zero_outside || config.shifting.coefficient > 0.0) traffic += sizeof(Vec<Dim>) + 1.0;
   if (config.shifting.coefficient > 0.0 && config.shifting.correct_velocity) traffic += sizeof(Vec<Dim>);
   return {.particle_memory = particle_bytes<Dim> + 2.0 * sizeof(int) + sizeof(Vec<Dim>),  // with the cells' order
-          .row_memory = (near + far) * pair + far * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
+          .row_memory = near * pair + far * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
           .cell_memory = 3.0 * sizeof(int),
           .halo_traffic = traffic};
 }

@@ -44,6 +44,22 @@ std::array<int, Dim> sum(std::array<int, Dim> a, const std::array<int, Dim>& b) 
   return a;
 }
 
+/// Shares of the corners of a cube, first axis fastest, in a value at a place inside it, 0 to 1 along each axis.
+template <int Dim>
+std::array<double, 1 << Dim> corner_shares(double value, const Vec<Dim>& inside) {
+  std::array<double, 1 << Dim> weight;
+  weight[0] = value;
+  std::size_t known = 1;
+  for (int k = 0; k < Dim; ++k) {
+    for (std::size_t c = 0; c < known; ++c) {
+      weight[known + c] = inside[k] * weight[c];
+      weight[c] -= weight[known + c];
+    }
+    known *= 2;
+  }
+  return weight;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -94,7 +110,7 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
                         PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(nodes_));
   root_value_.assign(owned_cells_, 0.0);
-  leaf_value_.assign(cell_of_node_.size(), 0.0);
+  leaf_value_.assign(cell_of_node_.size() + 1, 0.0);
   number_.assign(cell_of_node_.size(), -1);
   stale_ = true;
 }
@@ -107,41 +123,44 @@ int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordina
 }
 
 template <int Dim>
-typename TwoLevelPreconditioner<Dim>::Place TwoLevelPreconditioner<Dim>::place(const Vec<Dim>& position) const {
-  Place result;
-  Vec<Dim> upper;  // weight of base + 1
+std::array<int, Dim> TwoLevelPreconditioner<Dim>::place(const Vec<Dim>& position, Vec<Dim>& inside) const {
+  std::array<int, Dim> base;
   const Vec<Dim> in_edges = cells_.in_edges(cells_.unmirrored(position));
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     double at = in_edges[k] - 0.5;
     if (cells_.edges()[axis].low != Edge::periodic) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
-    const double base = std::floor(at);
-    result.base[axis] = static_cast<int>(base);
-    upper[k] = at - base;
+    base[axis] = static_cast<int>(std::floor(at));
+    inside[k] = at - base[axis];
   }
-  for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
-    double& weight = result.weight[static_cast<std::size_t>(c)];
-    weight = 1.0;
-    for (int k = 0; k < Dim; ++k) weight *= corner[static_cast<std::size_t>(k)] == 1 ? upper[k] : 1.0 - upper[k];
-  });
-  return result;
+  return base;
 }
 
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::find_interpolation(const PressureEquation& equation,
+void TwoLevelPreconditioner<Dim>::find_interpolation(std::span<const PressureRole> role,
                                                      std::span<const Vec<Dim>> position) {
-  const auto owned = static_cast<std::size_t>(equation.far.rows());
-  node_.assign(owned * corners, -1);
-  weight_.assign(owned * corners, 0.0);
-  for (std::size_t i = 0; i < owned; ++i) {
-    if (equation.role[i] != PressureRole::unknown) continue;
-    const Place at = place(position[i]);
+  patches_.clear();
+  inside_.resize(diagonal_.size());
+  for (std::size_t i = 0; i < inside_.size(); ++i) {
+    if (role[i] != PressureRole::unknown) continue;
+    const std::array<int, Dim> base = place(position[i], inside_[i]);
+    if (!patches_.empty() && patches_.back().last == i && patches_.back().base == base) {
+      patches_.back().last = i + 1;
+      continue;
+    }
+    Patch patch{i, i + 1, base, {}};
     for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
-      const std::size_t entry = i * corners + static_cast<std::size_t>(c);
-      weight_[entry] = at.weight[static_cast<std::size_t>(c)];
-      if (weight_[entry] > 0.0) node_[entry] = local_node(sum<Dim>(at.base, corner));
+      const int node = local_node(sum<Dim>(base, corner));
+      patch.node[static_cast<std::size_t>(c)] = node < 0 ? cell_of_node_.size() : static_cast<std::size_t>(node);
     });
+    patches_.push_back(patch);
   }
+}
+
+// The row of P.
+template <int Dim>
+typename TwoLevelPreconditioner<Dim>::Corners TwoLevelPreconditioner<Dim>::interpolation(std::size_t i) const {
+  return corner_shares(coupling_[i], inside_[i]);
 }
 
 template <int Dim>
@@ -154,8 +173,12 @@ void TwoLevelPreconditioner<Dim>::sum_at_roots() {
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::number_nodes() {
   std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
-  for (std::size_t k = 0; k < node_.size(); ++k)
-    if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k];
+  for (const Patch& patch : patches_) {
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += weight[c];
+    }
+  }
   sum_at_roots();
   root_.clear();
   for (std::size_t k = 0; k < owned_cells_; ++k)
@@ -170,50 +193,74 @@ void TwoLevelPreconditioner<Dim>::number_nodes() {
 }
 
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& equation,
-                                                      std::span<const Vec<Dim>> position) {
-  // Row by row: (A P)_i on the 4^Dim nodes that neighbours of i touch, then P^T (A P) on the 5^Dim around each node.
-  constexpr int near_size = power(4, Dim);
-  constexpr int stencil_size = power(5, Dim);
-  std::array<int, corners> corner_in_near, corner_in_stencil;
+void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
+                                                      std::span<const Vec<Dim>> position, const Halo& halo) {
+  // Row by row: (A P)_i on the 3^Dim cubes of nodes around the neighbours of i, then on the 4^Dim nodes themselves;
+  // patch by patch P^T (A P) on the same nodes; then on the 5^Dim around each node.
+  constexpr std::size_t n_cubes = power(3, Dim);
+  constexpr std::size_t near_size = power(4, Dim);
+  constexpr std::size_t stencil_size = power(5, Dim);
+  std::array<std::array<std::size_t, corners>, n_cubes> node_of_cube;
+  std::array<std::size_t, corners> corner_in_stencil;
   for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
-    corner_in_near[static_cast<std::size_t>(c)] = place_in_cube<Dim>(4, corner);
-    corner_in_stencil[static_cast<std::size_t>(c)] = place_in_cube<Dim>(5, corner);
+    const auto to = static_cast<std::size_t>(c);
+    corner_in_stencil[to] = static_cast<std::size_t>(place_in_cube<Dim>(5, corner));
+    for_cube<Dim>(3, 0, [&](int cube, const std::array<int, Dim>& offset) {
+      node_of_cube[static_cast<std::size_t>(cube)][to] =
+          static_cast<std::size_t>(place_in_cube<Dim>(4, sum<Dim>(offset, corner)));
+    });
   });
-  std::array<int, near_size> near_in_stencil;
+  std::array<std::size_t, near_size> near_in_stencil;
   for_cube<Dim>(4, 1, [&](int q, const std::array<int, Dim>& offset) {
-    near_in_stencil[static_cast<std::size_t>(q)] = place_in_cube<Dim>(5, offset);
+    near_in_stencil[static_cast<std::size_t>(q)] = static_cast<std::size_t>(place_in_cube<Dim>(5, offset));
   });
 
-  std::vector<Place> places(position.size());
-  for (std::size_t i = 0; i < position.size(); ++i)
-    if (equation.role[i] == PressureRole::unknown) places[i] = place(position[i]);
+  std::vector<double> coupling(matrix.coupling);
+  coupling.resize(position.size());
+  halo.refresh(coupling, static_cast<int>(coupling_.size()));
+  std::vector<std::array<int, Dim>> base(position.size());
+  std::vector<Corners> weight(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (role[i] != PressureRole::unknown) continue;
+    Vec<Dim> inside;
+    base[i] = place(position[i], inside);
+    weight[i] = corner_shares(coupling[i], inside);
+  }
 
-  std::vector<double> stencil(cell_of_node_.size() * stencil_size, 0.0);
+  std::vector<double> stencil((cell_of_node_.size() + 1) * stencil_size, 0.0);
+  std::array<Corners, n_cubes> cubes;
   std::array<double, near_size> row;
-  for (int i = 0; i < equation.far.rows(); ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (equation.role[self] != PressureRole::unknown) continue;
-    row.fill(0.0);
-    const auto add = [&](std::size_t j, double entry) {
-      std::array<int, Dim> offset;
-      for (std::size_t k = 0; k < Dim; ++k) offset[k] = places[j].base[k] - places[self].base[k] + 1;
-      const int first = place_in_cube<Dim>(4, offset);
+  std::array<std::array<double, near_size>, corners> product;
+  for (const Patch& patch : patches_) {
+    for (auto& line : product) line.fill(0.0);
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      for (Corners& cube : cubes) cube.fill(0.0);
+      const auto add = [&](std::size_t j, double entry) {
+        std::array<int, Dim> offset;
+        for (std::size_t k = 0; k < Dim; ++k) {
+          offset[k] = base[j][k] - patch.base[k] + 1;
+          if (cells_.edges()[k].low != Edge::periodic) continue;
+          if (offset[k] > 2) offset[k] -= cells_.extent()[k];
+          if (offset[k] < 0) offset[k] += cells_.extent()[k];
+        }
+        Corners& cube = cubes[static_cast<std::size_t>(place_in_cube<Dim>(3, offset))];
+        for (std::size_t c = 0; c < corners; ++c) cube[c] += entry * weight[j][c];
+      };
+      for (auto k = static_cast<std::size_t>(matrix.own.start[i]);
+           k < static_cast<std::size_t>(matrix.own.start[i + 1]); ++k)
+        add(static_cast<std::size_t>(matrix.own.column[k]), matrix.own.value[k]);
+      for (auto k = static_cast<std::size_t>(matrix.others.start[i]);
+           k < static_cast<std::size_t>(matrix.others.start[i + 1]); ++k)
+        add(static_cast<std::size_t>(matrix.other_particle[k]), matrix.others.value[k]);
+      row.fill(0.0);
+      for (std::size_t cube = 0; cube < n_cubes; ++cube)
+        for (std::size_t c = 0; c < corners; ++c) row[node_of_cube[cube][c]] += cubes[cube][c];
       for (std::size_t c = 0; c < corners; ++c)
-        row[static_cast<std::size_t>(first + corner_in_near[c])] += entry * places[j].weight[c];
-    };
-    add(self, diagonal_[self]);
-    for (int k = equation.far.begin(i); k < equation.far.end(i); ++k) {
-      const auto j = static_cast<std::size_t>(equation.far.index[static_cast<std::size_t>(k)]);
-      if (equation.role[j] == PressureRole::unknown && equation.row[j] != equation.row[self])
-        add(j, -equation.far.weight[static_cast<std::size_t>(k)]);
+        for (std::size_t q = 0; q < near_size; ++q) product[c][q] += weight[i][c] * row[q];
     }
     for (std::size_t c = 0; c < corners; ++c) {
-      const int node = node_[self * corners + c];
-      if (node < 0) continue;
-      double* entries = &stencil[static_cast<std::size_t>(node) * stencil_size];
-      const double weight = places[self].weight[c];
-      for (std::size_t q = 0; q < near_size; ++q) entries[near_in_stencil[q] - corner_in_stencil[c]] += weight * row[q];
+      double* entries = &stencil[patch.node[c] * stencil_size];
+      for (std::size_t q = 0; q < near_size; ++q) entries[near_in_stencil[q] - corner_in_stencil[c]] += product[c][q];
     }
   }
 
@@ -249,14 +296,15 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const PressureEquation& eq
 }
 
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::update(const PressureEquation& equation, std::span<const Vec<Dim>> position,
-                                         std::span<const double> diagonal, int iterations) {
-  diagonal_ = diagonal;
-  find_interpolation(equation, position);
+void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<const PressureRole> role,
+                                         std::span<const Vec<Dim>> position, const Halo& halo, int iterations) {
+  diagonal_ = matrix.diagonal;
+  coupling_ = matrix.coupling;
+  find_interpolation(role, position);
   if (age_ == 1) fresh_iterations_ = iterations;
   if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
     number_nodes();
-    build_coarse_matrix(equation, position);
+    build_coarse_matrix(matrix, role, position, halo);
     stale_ = false;
     age_ = 0;
     ++builds_;
@@ -287,9 +335,14 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
   check(VecGetArray(result, &z));
   const std::size_t owned = diagonal_.size();
   std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
-  for (std::size_t i = 0; i < owned; ++i)
-    for (std::size_t k = i * corners; k < (i + 1) * corners; ++k)
-      if (node_[k] >= 0) leaf_value_[static_cast<std::size_t>(node_[k])] += weight_[k] * r[i];
+  for (const Patch& patch : patches_) {
+    Corners sum{};
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) sum[c] += weight[c] * r[i];
+    }
+    for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += sum[c];
+  }
   sum_at_roots();
 
   double* coarse = nullptr;
@@ -304,11 +357,15 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 
   check(PetscSFBcastBegin(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
   check(PetscSFBcastEnd(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
-  for (std::size_t i = 0; i < owned; ++i) {
-    double value = jacobi_weight * r[i] / diagonal_[i];
-    for (std::size_t k = i * corners; k < (i + 1) * corners; ++k)
-      if (node_[k] >= 0) value += weight_[k] * leaf_value_[static_cast<std::size_t>(node_[k])];
-    z[i] = value;
+  leaf_value_.back() = 0.0;
+  for (std::size_t i = 0; i < owned; ++i) z[i] = jacobi_weight * r[i] / diagonal_[i];
+  for (const Patch& patch : patches_) {
+    Corners value;
+    for (std::size_t c = 0; c < corners; ++c) value[c] = leaf_value_[patch.node[c]];
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) z[i] += weight[c] * value[c];
+    }
   }
   check(VecRestoreArray(result, &z));
   check(VecRestoreArrayRead(residual, &r));
@@ -316,9 +373,10 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 
 template <int Dim>
 std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
-  return (weight_.capacity() + root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
-         (node_.capacity() + node_of_cell_.capacity() + cell_of_node_.capacity()) * sizeof(int) +
-         number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
+  return inside_.capacity() * sizeof(Vec<Dim>) + patches_.capacity() * sizeof(Patch) +
+         (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
+         (node_of_cell_.capacity() + cell_of_node_.capacity()) * sizeof(int) + number_.capacity() * sizeof(PetscInt) +
+         root_.capacity() * sizeof(std::size_t);
 }
 
 template class TwoLevelPreconditioner<2>;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "impinge/cell_grid.hpp"
+#include "impinge/neighbours.hpp"
 #include "impinge/particles.hpp"
 
 namespace impinge {
@@ -48,6 +49,21 @@ Particles<Dim> sorted(const CellGrid<Dim>& cells, const Particles<Dim>& particle
   Particles<Dim> result;
   for (const auto& [cell, id, i] : order) result.append(particles.record(i));
   return result;
+}
+
+/// The far rows of a search as a list; each without the particle itself, if `with_self` is false.
+template <int Dim>
+PairList far_list(NeighbourSearch<Dim>& search, bool with_self = true) {
+  PairList list;
+  search.for_far_rows([&](int i, const PairRow& row) {
+    for (std::size_t k = 0; k < row.index.size(); ++k) {
+      if (row.index[k] == i && !with_self) continue;
+      list.index.push_back(row.index[k]);
+      list.weight.push_back(row.weight[k]);
+    }
+    list.start.push_back(static_cast<int>(list.index.size()));
+  });
+  return list;
 }
 
 }  // namespace impinge

@@ -56,6 +56,7 @@ class CellGrid {
   /// The original of a mirror image beyond the box; other positions as they are.
   Vec<Dim> unmirrored(Vec<Dim> position) const;
 
+  const Vec<Dim>& edge() const { return edge_; }  ///< lengths of a cell [m]
   const std::array<int, Dim>& extent() const { return extent_; }
   const Edges<Dim>& edges() const { return edges_; }
 

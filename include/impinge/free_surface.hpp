@@ -34,7 +34,7 @@ class SurfaceClosure {
 /// spacing [m] outside the surface particles of its row, their normals along the asymmetries; infinite without any.
 /// Reads positions, asymmetries and surface marks of owned particles and halo.
 template <int Dim>
-double surface_depth(const PairList& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,
+double surface_depth(const PairRow& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,
                      std::span<const std::uint8_t> free_surface, double spacing, int i);
 
 /// Unit normal of the free surface at particle i, out of the fluid, from the asymmetries of the surface particles among

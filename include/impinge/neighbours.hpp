@@ -11,24 +11,31 @@
 
 namespace impinge {
 
-/// Pairs in compressed rows, one row per owned particle: local index of the neighbour (owned or halo) and the kernel's
-/// weight W(r_ij) [-]. The arrays may be longer than start.back().
+/// The pairs of one particle: local indices of the neighbours (owned or halo) and the kernel's weights W(r_ij) [-].
+struct PairRow {
+  std::span<const int> index;
+  std::span<const double> weight;
+};
+
+/// Pairs in compressed rows, one row per owned particle. The arrays may be longer than start.back(); what is beyond has
+/// no value.
 struct PairList {
   std::vector<int> start{0};
-  std::vector<int> index;
-  std::vector<double> weight;
+  Buffer<int> index;
+  Buffer<double> weight;
 
   int begin(int i) const { return start[static_cast<std::size_t>(i)]; }
   int end(int i) const { return start[static_cast<std::size_t>(i) + 1]; }
   int rows() const { return static_cast<int>(start.size()) - 1; }
   std::int64_t pairs() const { return start.back(); }
   std::size_t bytes() const {
-    return (start.capacity() + index.capacity()) * sizeof(int) + weight.capacity() * sizeof(double);
+    return start.capacity() * sizeof(int) + static_cast<std::size_t>(pairs()) * (sizeof(int) + sizeof(double));
   }
 };
 
-/// Finds all pairs within two radii. A row's order is that of the cells and, within a cell, of the ids, so sums over a
-/// row are bitwise the same for every decomposition; columns of owned particles ascend.
+/// Finds all pairs within two radii: the near ones as a list, the far ones row by row as they are asked for, since
+/// there are too many to keep. A row's order is that of the cells and, within a cell, of the ids, so sums over a row
+/// are bitwise the same for every decomposition; columns of owned particles ascend.
 template <int Dim>
 class NeighbourSearch {
  public:
@@ -38,27 +45,35 @@ class NeighbourSearch {
   NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius, double far_radius,
                   bool mirrored = false);
 
-  /// Reads positions and types of owned particles (sorted) and halo. Inlet and ghost particles get empty rows. Not
-  /// collective.
-  void search(const Particles<Dim>& particles);
-
-  /// The same where the ghosts behind a wall share its unknown. `column`: local index of the particle whose unknown a
-  /// particle shares, for all particles; its own but for ghosts, whose wall particle stands on the same rank. The far
-  /// list then holds the pairs of unknowns: a ghost's pairs stand in its wall particle's row, and its weight in the
-  /// rows of others is added to that of its wall particle; pairs inside a column are left out. Ghosts have near rows.
-  void search(const Particles<Dim>& particles, std::span<const int> column);
+  /// Reads positions and types of owned particles (sorted) and halo. Inlet particles get empty rows. Not collective.
+  ///
+  /// `column`, where the ghosts behind a wall share its unknown, else empty: local index of the particle whose unknown
+  /// a particle shares, for all particles; its own but for ghosts, whose wall particle stands on the same rank. Only
+  /// then ghosts have near rows, and the far rows hold the pairs of unknowns: a ghost's pairs stand in its wall
+  /// particle's row, and its weight in the rows of others is added to that of its wall particle; pairs inside a column
+  /// are left out.
+  void search(const Particles<Dim>& particles, std::span<const int> column = {});
 
   const PairList& near() const { return near_; }
-  const PairList& far() const { return far_; }
 
-  /// Memory that the lists and the search hold [bytes].
+  /// Calls use(i, row) for every owned particle in their order, with its pairs within the far radius at the last search
+  /// and the particle itself in its place, with weight 0. Rows of inlet particles, ghosts, and walls on mirrors are
+  /// empty. A row is valid during the call. Not collective.
+  template <class Use>
+  void for_far_rows(Use&& use) {
+    for (int i = 0; i < near_.rows(); ++i) use(i, far_row(i));
+  }
+
+  /// Memory that the list and the search hold [bytes].
   std::size_t bytes() const;
 
  private:
   void arrange(const Particles<Dim>& particles);
-  template <class Kernel>
-  void find_pairs(const Particles<Dim>& particles, std::span<const int> column);
-  void merge_columns(int begin, int& end);
+  void find_near(const Particles<Dim>& particles);
+  PairRow far_row(int i);
+  std::size_t append_within(double radius, double above, int i, const Vec<Dim>& centre, std::size_t used);
+  void weigh(double radius, std::size_t count, double* weight) const;
+  std::size_t join_columns(int i, std::size_t count);
 
   CellGrid<Dim> cells_;
   int reach_;
@@ -67,16 +82,23 @@ class NeighbourSearch {
   double far_radius_;
   bool mirrored_;
   PairList near_;
-  PairList far_;
   // Particles in the order of the local cells: a box of cells around all of them, padded by the reach.
   std::array<int, Dim> box_low_;
   std::array<int, Dim> box_extent_;
   std::vector<int> box_cell_;  // per particle
   std::vector<int> cell_start_;
-  std::vector<int> entry_;  // particle of each place in cell order
-  std::vector<Vec<Dim>> entry_position_;
-  std::vector<int> place_;                      // inverse of entry_
-  std::vector<std::pair<int, double>> merged_;  // (place, weight) of a row
+  std::vector<int> entry_;                               // particle of each place in cell order
+  std::vector<int> place_;                               // inverse of entry_
+  std::array<std::vector<double>, Dim> entry_position_;  // by axis
+  std::vector<ParticleType> type_;                       // of the owned particles
+  std::vector<int> column_;                              // of all particles, or empty
+  std::vector<std::pair<int, int>> members_;             // owned ghosts behind their wall particles
+  // Of one row.
+  std::array<std::vector<double>, Dim> gap2_;  // squares of the distances to layers of cells, by axis
+  Buffer<int> index_;
+  Buffer<double> square_;  // of the distances
+  Buffer<double> weight_;
+  std::vector<std::pair<int, double>> merged_;  // (place, weight)
 };
 
 }  // namespace impinge

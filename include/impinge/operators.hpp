@@ -62,7 +62,7 @@ double weighted_mean(const PairList& near, std::span<const double> value, int i)
 /// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
 /// `factor` = 2 Dim/(n0 lambda) [1/m^2].
 template <int Dim>
-Vec<Dim> velocity_laplacian(const PairList& far, std::span<const Vec<Dim>> velocity, double factor, int i);
+Vec<Dim> velocity_laplacian(const PairRow& far, std::span<const Vec<Dim>> velocity, double factor, int i);
 
 /// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
 /// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes

@@ -2,6 +2,7 @@
 // The pressure Poisson equation as a PETSc system. It knows pairs and roles, no geometry.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,15 +21,40 @@ enum class PressureRole : std::uint8_t {
 };
 
 /// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. All views stay
-/// valid until the solve.
+/// valid until assemble returns.
 struct PressureEquation {
-  const PairList& far;                 ///< pairs and weights of the Laplacian, one row per owned particle
+  /// Calls its argument for every owned particle in their order, with the pairs and weights of its Laplacian: columns
+  /// of owned particles ascend, and where it has an unknown, the particle itself stands among them with weight 0.
+  std::function<void(const std::function<void(int, const PairRow&)>&)> for_rows;
   std::span<const PressureRole> role;  ///< owned and halo
   std::span<const PetscInt> row;       ///< global rows, owned and halo
   std::span<const double> source;      ///< [Pa/m^2], owned
   double factor;                       ///< 2 Dim/(n0 lambda) [1/m^2]
   double n0;                           ///< full lattice's sum of weights [-]
-  std::span<const double> surface{};   ///< weight of p = 0 beyond the surface, owned [-]; or none
+  int usual_pairs;                     ///< full lattice's pairs of a particle
+  /// Weight of p = 0 beyond the surface, owned [-]; or none. The entry of a particle is read after its row was given.
+  std::span<const double> surface{};
+  /// What a halo particle's pressure is above its original's [Pa], halo; or none.
+  std::span<const double> excess{};
+};
+
+/// The matrix on this rank, by particles.
+struct MatrixRows {
+  struct Block {
+    std::vector<PetscInt> start;
+    Buffer<PetscInt> column;
+    Buffer<double> value;  // may be longer than start.back(), as may be the columns
+
+    void clear(std::size_t rows, std::size_t entries);  // and makes room for so many
+    void make_room(std::size_t more);                   // behind the rows so far
+  };
+  Block own;                        ///< columns: owned particles, ascending
+  Block others;                     ///< columns of other ranks
+  std::vector<int> other_particle;  ///< halo particle of each entry of `others`
+  std::vector<double> diagonal;
+  /// What a row has of the constants: sum of its entries but for the diagonal, over -A_ii; 1 where no p = 0 is near, 0
+  /// without an unknown.
+  std::vector<double> coupling;
 };
 
 struct PressureReport {
@@ -60,48 +86,44 @@ class PressureSolver {
   /// Builds matrix and right-hand side. Collective.
   void assemble(const PressureEquation& equation, const Halo& halo);
 
-  /// Solves for the owned particles; `pressure` [Pa] holds the first guess (owned entries) and receives the solution.
-  /// Non-convergence is reported, never ignored. Collective.
+  /// Solves for the owned particles; `pressure` [Pa] holds a guess (owned entries), the best multiple of which
+  /// is where the solver starts, and receives the solution. Non-convergence is reported, never ignored. Collective.
   PressureReport solve(std::vector<double>& pressure);
 
   /// The options that this class set as defaults; the rest of the database is the user's.
   const std::vector<std::string>& default_options() const { return default_options_; }
 
-  /// Diagonal of the matrix of the last assemble, owned rows.
-  const std::vector<double>& diagonal() const { return diagonal_entries_; }
-
-  /// Matrix of the last assemble.
+  /// The matrix of the last assemble.
   Mat matrix() const { return matrix_; }
+  const MatrixRows& rows() const { return rows_; }
 
   /// Memory of the matrix and the vectors [bytes].
   std::size_t bytes() const;
 
  private:
-  struct Block {
-    std::vector<PetscInt> start, column;
-    std::vector<double> value;
-    std::size_t used = 0;  // entries; the arrays may be longer
-    void reset(std::size_t rows, std::size_t most_entries);
-    void append(PetscInt to, double entry);
-    void merge(std::size_t row_begin, std::vector<std::pair<PetscInt, double>>& more);  // into the last row, ascending
-    void end_row();
-  };
-
   void create_solver();
   void set_default_option(const char* name, const char* value);
+  void append_row(const PressureEquation& equation, int i, const PairRow& pairs);
   void find_pockets(const PressureEquation& equation, const Halo& halo);
+  void close_pockets(const PressureEquation& equation);
 
   MPI_Comm comm_;
   double tolerance_;
   bool is_two_level_ = false;
   PetscSolver solver_;
   std::vector<std::string> default_options_;
-  std::vector<double> diagonal_entries_;
-  Block diagonal_;      // columns of this rank, local
-  Block off_diagonal_;  // columns of other ranks, global
-  PetscMatrix matrix_;
+  struct OtherEntry {  // of the matrix, whose column is that of another rank's particle
+    PetscInt row;
+    int particle;
+    double value;
+  };
+  std::vector<std::pair<PetscInt, double>> images_;  // of a row: entries from images of owned particles
+  std::vector<OtherEntry> others_;                   // of a row
+  MatrixRows rows_;
+  PetscMatrix matrix_;  // uses the arrays of rows_
   std::vector<double> right_hand_side_;
   PetscInt first_row_ = 0;
+  std::vector<std::uint8_t> anchored_;  // p = 0 is reached over unknowns; owned and halo
 
   // Pockets: label per owned particle (smallest global row of its pocket, -1 elsewhere) and the labels of all.
   std::vector<PetscInt> pocket_;

@@ -118,7 +118,7 @@ class Simulation {
 
   void hold_to_walls();
   void find_columns();
-  void find_surface_weights();
+  double surface_weight(int i, const PairRow& far) const;
   void weigh_images();
   void find_sources();
   void share_wall_pressure();

@@ -13,7 +13,8 @@ namespace impinge {
 
 /// z = w D^-1 r + P A_c^-1 P^T r, symmetric and positive definite as A is. One Jacobi sweep damps all that is shorter
 /// than the wide kernel; the rest lives on the centres of the background cells. P: (bi, tri)linear interpolation from
-/// the cells to the unknown particles; A_c = P^T A P; A_c^-1: one cycle of an algebraic multigrid, a KSP of prefix
+/// the cells to the unknown particles, times the row's coupling, which makes it fall to zero where p = 0 is near, as a
+/// sweep of Jacobi on the constants would; A_c = P^T A P; A_c^-1: one cycle of an algebraic multigrid, a KSP of prefix
 /// `ppe_coarse_`. P is that of the current positions; A_c is kept until iterations grow.
 template <int Dim>
 class TwoLevelPreconditioner {
@@ -31,10 +32,10 @@ class TwoLevelPreconditioner {
   /// Makes the next update renew the coarse matrix.
   void expire() { stale_ = true; }
 
-  /// Follows the particles and renews the coarse matrix where it is due. `position`: owned and halo; `diagonal`: of A,
-  /// valid until the solve; `iterations`: of the solve before. Collective.
-  void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, std::span<const double> diagonal,
-              int iterations);
+  /// Follows the particles and renews the coarse matrix where it is due. `matrix` is valid until the solve; `role`,
+  /// `position`: owned and halo, whose pattern is `halo`; `iterations`: of the solve before. Collective.
+  void update(const MatrixRows& matrix, std::span<const PressureRole> role, std::span<const Vec<Dim>> position,
+              const Halo& halo, int iterations);
 
   /// Makes `preconditioner` (a shell) this one. Collective.
   void attach(PC preconditioner);
@@ -46,24 +47,28 @@ class TwoLevelPreconditioner {
   std::size_t bytes() const;
 
   /// The part of it that every unknown takes [bytes].
-  static constexpr std::size_t bytes_per_row = sizeof(double) + (1 << Dim) * (sizeof(int) + sizeof(double));
+  static constexpr std::size_t bytes_per_row = sizeof(Vec<Dim>);
 
  private:
-  static constexpr int corners = 1 << Dim;
+  static constexpr std::size_t corners = 1 << Dim;
+  using Corners = std::array<double, corners>;  // of the cells base + (0 or 1 along each axis), first axis fastest
 
-  /// A particle between the centres of the cells `base` and `base` + 1 along each axis.
-  struct Place {
+  /// Unknown particles [first, last) between the centres of the cells `base` and `base` + 1 along each axis.
+  struct Patch {
+    std::size_t first, last;
     std::array<int, Dim> base;
-    std::array<double, corners> weight;  // of the cells base + (0 or 1 along each axis), first axis fastest
+    std::array<std::size_t, corners> node;  // local nodes of the corners; one behind all of them where there is none
   };
 
   void create_coarse_solver();
   int local_node(const std::array<int, Dim>& coordinates) const;
-  Place place(const Vec<Dim>& position) const;
-  void find_interpolation(const PressureEquation& equation, std::span<const Vec<Dim>> position);
+  std::array<int, Dim> place(const Vec<Dim>& position, Vec<Dim>& inside) const;
+  void find_interpolation(std::span<const PressureRole> role, std::span<const Vec<Dim>> position);
   void sum_at_roots();  // leaf_value_ into root_value_
   void number_nodes();
-  void build_coarse_matrix(const PressureEquation& equation, std::span<const Vec<Dim>> position);
+  void build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
+                           std::span<const Vec<Dim>> position, const Halo& halo);
+  Corners interpolation(std::size_t i) const;
   void apply(::Vec residual, ::Vec result);
 
   MPI_Comm comm_;
@@ -74,12 +79,13 @@ class TwoLevelPreconditioner {
   PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
 
   std::span<const double> diagonal_;  // of A, owned rows
-  std::vector<int> node_;             // P: corners entries per owned particle, -1 for none
-  std::vector<double> weight_;        // likewise
+  std::span<const double> coupling_;  // likewise
+  std::vector<Patch> patches_;        // all unknowns
+  std::vector<Vec<Dim>> inside_;      // place of an owned particle between the centres, 0 to 1 along each axis
   std::vector<PetscInt> number_;      // row of A_c of a local node, -1 for none
   std::vector<std::size_t> root_;     // root of each row of A_c on this rank
   std::vector<double> root_value_;
-  std::vector<double> leaf_value_;
+  std::vector<double> leaf_value_;  // of the local nodes, and one behind them that is nobody's
   PetscMatrix coarse_matrix_;
   PetscSolver coarse_solver_;
   PetscVector coarse_residual_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 namespace impinge {
 
@@ -96,6 +98,27 @@ double determinant(const Matrix<Dim>& m) {
   for (int k = 0; k < Dim; ++k) sum += m.row[0][k] * adjoint.row[static_cast<std::size_t>(k)][0];
   return sum;
 }
+
+/// Leaves new entries of a vector unwritten: memory beyond what is used then costs nothing.
+template <class T>
+struct UninitialisedAllocator : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = UninitialisedAllocator<U>;
+  };
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  }
+  template <class U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+};
+
+/// A vector whose new entries have no value.
+template <class T>
+using Buffer = std::vector<T, UninitialisedAllocator<T>>;
 
 /// Axis-aligned box [m].
 template <int Dim>

@@ -89,7 +89,7 @@ std::array<std::vector<double>, 2> densities(const Domain<Dim>& domain, const Pa
   std::array<std::vector<double>, 2> density;
   for (auto& values : density) values.resize(static_cast<std::size_t>(particles.owned));
   number_density(search.near(), density[0]);
-  number_density(search.far(), density[1]);
+  number_density(far_list(search), density[1]);
   return density;
 }
 

@@ -97,14 +97,20 @@ class Distributed {
     source_.clear();
     for (int i = 0; i < particles_.owned; ++i)
       source_.push_back(source[static_cast<std::size_t>(particles_.id[static_cast<std::size_t>(i)])]);
-    const PressureEquation equation{search_.far(), role_, domain_.rows(), source_, factor, n0};
-    solver_.assemble(equation, domain_.halo());
+    solver_.assemble({.for_rows = [&](const auto& use) { search_.for_far_rows(use); },
+                      .role = role_,
+                      .row = domain_.rows(),
+                      .source = source_,
+                      .factor = factor,
+                      .n0 = n0,
+                      .usual_pairs = 48},
+                     domain_.halo());
     if (!solver_.is_two_level()) return;
     if (!two_level_) {
       two_level_.emplace(comm_, domain_.cells());
       two_level_->set_owners(domain_.owners());
     }
-    two_level_->update(equation, particles_.position, solver_.diagonal(), 0);
+    two_level_->update(solver_.rows(), role_, particles_.position, domain_.halo(), 0);
     two_level_->attach(solver_.preconditioner());
   }
 

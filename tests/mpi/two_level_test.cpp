@@ -54,20 +54,26 @@ class Cloud {
     search_.search(particles_);
     for (const auto& position : particles_.position) role_.push_back(role_at(position));
     const LatticeSums sums = lattice_sums<Dim>(KernelType::non_singular, radius);
-    n0_ = sums.number_density;
-    factor_ = 2.0 * Dim / (n0_ * sums.lambda);
     source_.assign(particles_.pressure.begin(), particles_.pressure.begin() + particles_.owned);
-    solver_.assemble(equation(), domain_.halo());
+    solver_.assemble({.for_rows = [&](const auto& use) { search_.for_far_rows(use); },
+                      .role = role_,
+                      .row = domain_.rows(),
+                      .source = source_,
+                      .factor = 2.0 * Dim / (sums.number_density * sums.lambda),
+                      .n0 = sums.number_density,
+                      .usual_pairs = sums.neighbours},
+                     domain_.halo());
     two_level_.set_owners(domain_.owners());
   }
 
-  PressureEquation equation() const { return {search_.far(), role_, domain_.rows(), source_, factor_, n0_}; }
   TwoLevelPreconditioner<Dim>& two_level() { return two_level_; }
   Domain<Dim>& domain() { return domain_; }
   const Particles<Dim>& particles() const { return particles_; }
   PressureRole role(std::size_t i) const { return role_[i]; }
 
-  void update(int iterations) { two_level_.update(equation(), particles_.position, solver_.diagonal(), iterations); }
+  void update(int iterations) {
+    two_level_.update(solver_.rows(), role_, particles_.position, domain_.halo(), iterations);
+  }
 
   PressureReport solve() {
     two_level_.attach(solver_.preconditioner());
@@ -127,8 +133,6 @@ class Cloud {
   Particles<Dim> particles_;
   std::vector<PressureRole> role_;
   std::vector<double> source_;
-  double n0_ = 0.0;
-  double factor_ = 0.0;
 };
 
 template <int Dim>

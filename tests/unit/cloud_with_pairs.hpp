@@ -30,7 +30,7 @@ struct Cloud {
     NeighbourSearch<Dim> search(cells, reach, kernel, near_radius, far_radius);
     search.search(particles);
     near = search.near();
-    far = search.far();
+    far = far_list(search);
   }
 
   /// The particle nearest to a point.
@@ -42,6 +42,11 @@ struct Cloud {
   }
   double distance(int i, const Vec<Dim>& point) const {
     return norm(particles.position[static_cast<std::size_t>(i)] - point);
+  }
+
+  PairRow far_row(int i) const {
+    const auto begin = static_cast<std::size_t>(far.begin(i)), count = static_cast<std::size_t>(far.end(i)) - begin;
+    return {{&far.index[begin], count}, {&far.weight[begin], count}};
   }
 
   int centre() const {

@@ -32,7 +32,7 @@ class FreeSurface : public testing::Test {
     return lattice_.at(point);
   }
   double depth_of(int i, double spacing = 1.0) const {
-    return surface_depth<Dim>(lattice_.far, lattice_.particles.position, asymmetry_, marked_, spacing, i);
+    return surface_depth<Dim>(lattice_.far_row(i), lattice_.particles.position, asymmetry_, marked_, spacing, i);
   }
   Vec<Dim> normal_at(double depth) const {
     return surface_normal<Dim>(lattice_.near, asymmetry_, marked_, at_depth(depth));

@@ -139,8 +139,8 @@ TYPED_TEST(Operators, VelocityLaplacianIsExactOnQuadraticFields) {
       lattice.particles.velocity[i][0] = x[0] * x[0] + 3.0 * x[1] * x[1] + 2.0 * x[0] * x[1] - 5.0 * x[1];
       lattice.particles.velocity[i][1] = -2.0 * x[Dim - 1] * x[Dim - 1] + x[0];
     }
-    const Vec<Dim> laplacian =
-        velocity_laplacian<Dim>(lattice.far, lattice.particles.velocity, factor, lattice.centre());
+    const Vec<Dim> laplacian = velocity_laplacian<Dim>(lattice.far_row(lattice.centre()), lattice.particles.velocity,
+                                                       factor, lattice.centre());
     EXPECT_NEAR(laplacian[0], 8.0, 1e-11);
     EXPECT_NEAR(laplacian[1], -4.0, 1e-11);
     EXPECT_EQ(laplacian[Dim - 1], Dim == 2 ? laplacian[1] : 0.0);
@@ -370,7 +370,7 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, Matrix<Dim>::identity(), 4.0, 0),
             Vec<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);
-  EXPECT_EQ(velocity_laplacian<Dim>(none, single.velocity, 4.0, 0), Vec<Dim>{});
+  EXPECT_EQ(velocity_laplacian<Dim>(PairRow{}, single.velocity, 4.0, 0), Vec<Dim>{});
   EXPECT_EQ(pressure_gradient<Dim>(none, single.position, single.pressure, single.type, single.no_wall(), 4.0, 0),
             Vec<Dim>{});
 }
