@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Prints what a step costs: the 60 degree jet from its steady state and a sloshing 3D block of 100 thousand fluid
-# particles, on 1 and 2 ranks; first as runs do it, then with every pressure solve cold and to 1e-8.
+# Prints what a step costs: the 60 degree jet from its steady state, by the paper's scheme and at H/DP = 80 by the
+# consistent one, and a sloshing 3D block of 100 thousand fluid particles, on 1 and 2 ranks; first as runs do it, then
+# with every pressure solve cold and to 1e-8.
 # Usage: jobs/bench.sh [H/DP ...]    particles across the jet; default 40 80 160, and 80 400 cold
 #        jobs/bench.sh --kernels     the inner loops alone, on one rank, by Google Benchmark
 # Output: output/bench/: the tables warm.txt and cold.txt, their runs as JSON, kernels.txt. Takes minutes; let nothing
@@ -10,7 +11,7 @@ cd "$(dirname "$0")/.."
 . jobs/common.sh
 
 usage() {
-  sed -n '2,7s/^# //p' "$0" >&2
+  sed -n '2,8s/^# //p' "$0" >&2
   exit 2
 }
 kernels=
@@ -42,7 +43,8 @@ measure() {
   done
 }
 
-# jet TABLE H/DP OPTIONS...: gamma/dt, the weight of the density term against the flow, is the same for every H/DP
+# jet TABLE H/DP OPTIONS...: the paper's scheme, with gamma/dt, the weight of the density term against the flow, the same
+# for every H/DP
 jet() {
   local table=$1 resolution=$2
   shift 2
@@ -51,11 +53,20 @@ jet() {
     --set "pressure.gamma=$(quotient 0.8 "$resolution")" "$@"
 }
 
+# consistent TABLE H/DP OPTIONS...: the consistent scheme
+consistent() {
+  local table=$1 resolution=$2
+  shift 2
+  measure "$table" "consistent$resolution" input/jet.toml --set jet.start=steady \
+    --set "particles.spacing=$(quotient 0.4 "$resolution")" --set "time.dt=$(quotient 0.064 "$resolution")" "$@"
+}
+
 # tabulate TABLE "H/DP..." OPTIONS...
 tabulate() {
   local table=$1 resolutions=$2 resolution files=()
   shift 2
   for resolution in $resolutions; do jet "$table" "$resolution" "$@"; done
+  consistent "$table" 80 "$@"
   measure "$table" block3D input/hydrostatic-3d.toml --set 'tank.size=[0.46, 0.46, 0.7]' --set tank.fluid_height=0.47 \
     --set 'fluid.gravity=[4, 0, -9.81]' "$@"
   /usr/bin/python3 jobs/bench_table.py "${files[@]}" | tee "$root/$table.txt"
