@@ -10,8 +10,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "impinge/parallel.hpp"
@@ -64,6 +66,7 @@ hid_t native_type() {
 class QuietErrors {
  public:
   QuietErrors() {
+    H5dont_atexit();  // every file is closed here; what HDF5 itself keeps of a damaged one it cannot close at the exit
     H5open();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -105,6 +108,7 @@ class Writer {
   Writer(MPI_Comm comm, std::string path) : comm_(comm), path_(std::move(path)), partial_(path_ + ".partial") {
     const Properties access(H5Pcreate(H5P_FILE_ACCESS));
     keep(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL));
+    keep(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18));  // its metadata have checksums
     file_ = File(keep(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)));
     transfer_ = Properties(H5Pcreate(H5P_DATASET_XFER));
     keep(H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE));
@@ -204,7 +208,7 @@ class Writer {
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {
-    if (!fs::exists(path)) fail("no such file");
+    check_signature();
     file_ = File(need(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)));
     if (H5Aexists(file_, "format_version") <= 0 || H5Lexists(file_, "VTKHDF", H5P_DEFAULT) <= 0)
       fail("not a snapshot of Impinge");
@@ -218,7 +222,9 @@ class Reader {
     T value{};
     const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
     const Dataspace space(need(H5Aget_space(attribute)));
-    if (H5Sget_simple_extent_npoints(space) != 1) fail(fmt::format("attribute {} is not a single number", name));
+    const Datatype type(need(H5Aget_type(attribute)));
+    if (H5Sget_simple_extent_npoints(space) != 1 || H5Tequal(type, native_type<T>()) <= 0)
+      fail(fmt::format("attribute {} is not a single number of its type", name));
     need(H5Aread(attribute, native_type<T>(), &value));
     return value;
   }
@@ -226,8 +232,10 @@ class Reader {
   std::string text(const char* name) const {
     const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
     const Datatype type(need(H5Aget_type(attribute)));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    const Dataspace space(need(H5Aget_space(attribute)));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1)
       fail(fmt::format("attribute {} is not a text of fixed length", name));
+    if (H5Tget_size(type) > size_) fail(fmt::format("attribute {} is longer than the file", name));
     std::string value(H5Tget_size(type), '\0');
     need(H5Aread(attribute, type, value.data()));
     value.erase(std::find(value.begin(), value.end(), '\0'), value.end());
@@ -247,6 +255,9 @@ class Reader {
     const auto whole = extent(set, name);
     if (first + count > whole[0] || whole[1] != columns)
       fail(fmt::format("dataset {} has {} x {} entries", name, whole[0], whole[1]));
+    const Datatype type(need(H5Dget_type(set)));
+    if (H5Tequal(type, native_type<T>()) <= 0) fail(fmt::format("dataset {} has another type", name));
+    check_storage(set, name, static_cast<hsize_t>(whole[0]) * width * sizeof(T));
     std::vector<T> values(static_cast<std::size_t>(count) * width);
     if (count == 0) return values;
     const int rank = columns > 0 ? 2 : 1;
@@ -270,6 +281,25 @@ class Reader {
     return code;
   }
 
+  // HDF5 itself trusts metadata of the oldest form, which have no checksums.
+  void check_signature() {
+    std::error_code error;
+    size_ = fs::file_size(path_, error);
+    if (error) fail(error == std::errc::no_such_file_or_directory ? "no such file" : error.message());
+    std::array<char, 9> start{};
+    std::ifstream(path_, std::ios::binary).read(start.data(), start.size());
+    if (!std::string_view(start.data(), start.size()).starts_with("\x89HDF\r\n\x1a\n")) fail("not an HDF5 file");
+    if (start[8] < 2) fail("not a snapshot of Impinge");
+  }
+
+  // The values stand in one piece within the file.
+  void check_storage(hid_t set, const std::string& name, hsize_t bytes) const {
+    const Properties properties(need(H5Dget_create_plist(set)));
+    if (H5Pget_layout(properties) != H5D_CONTIGUOUS || H5Pget_external_count(properties) != 0 ||
+        H5Dget_storage_size(set) != bytes || (bytes > 0 && H5Dget_offset(set) > size_ - bytes) || bytes > size_)
+      fail(fmt::format("dataset {} is not stored as a snapshot's", name));
+  }
+
   // Rows and columns; 0 columns for a one-dimensional dataset.
   std::array<std::int64_t, 2> extent(hid_t set, const std::string& name) const {
     const Dataspace space(need(H5Dget_space(set)));
@@ -282,6 +312,7 @@ class Reader {
 
   QuietErrors quiet_;
   std::string path_;
+  std::uintmax_t size_ = 0;
   File file_;
 };
 
