@@ -220,7 +220,7 @@ class Reader {
   template <class T>
   T number(const char* name) const {
     T value{};
-    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT), name));
     const Dataspace space(need(H5Aget_space(attribute)));
     const Datatype type(need(H5Aget_type(attribute)));
     if (H5Sget_simple_extent_npoints(space) != 1 || H5Tequal(type, native_type<T>()) <= 0)
@@ -230,7 +230,7 @@ class Reader {
   }
 
   std::string text(const char* name) const {
-    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT), name));
     const Datatype type(need(H5Aget_type(attribute)));
     const Dataspace space(need(H5Aget_space(attribute)));
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1)
@@ -243,7 +243,7 @@ class Reader {
   }
 
   std::int64_t rows(const std::string& name) const {
-    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), name));
     return extent(set, name)[0];
   }
 
@@ -251,13 +251,13 @@ class Reader {
   template <class T>
   std::vector<T> dataset(const std::string& name, std::int64_t first, std::int64_t count, int columns = 0) const {
     const auto width = static_cast<hsize_t>(std::max(columns, 1));
-    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), name));
     const auto whole = extent(set, name);
     if (first + count > whole[0] || whole[1] != columns)
       fail(fmt::format("dataset {} has {} x {} entries", name, whole[0], whole[1]));
     const Datatype type(need(H5Dget_type(set)));
     if (H5Tequal(type, native_type<T>()) <= 0) fail(fmt::format("dataset {} has another type", name));
-    check_storage(set, name, static_cast<hsize_t>(whole[0]) * width * sizeof(T));
+    check_storage(set, name, static_cast<hsize_t>(whole[0]), width * sizeof(T));
     std::vector<T> values(static_cast<std::size_t>(count) * width);
     if (count == 0) return values;
     const int rank = columns > 0 ? 2 : 1;
@@ -276,8 +276,8 @@ class Reader {
 
  private:
   template <class Code>
-  Code need(Code code) const {
-    if (code < 0) fail(hdf5_reason());
+  Code need(Code code, const std::string& name = "") const {
+    if (code < 0) fail(fmt::format("{}{}{}", name, name.empty() ? "" : ": ", hdf5_reason()));
     return code;
   }
 
@@ -293,11 +293,12 @@ class Reader {
   }
 
   // The values stand in one piece within the file.
-  void check_storage(hid_t set, const std::string& name, hsize_t bytes) const {
+  void check_storage(hid_t set, const std::string& name, hsize_t rows, hsize_t row_bytes) const {
     const Properties properties(need(H5Dget_create_plist(set)));
-    if (H5Pget_layout(properties) != H5D_CONTIGUOUS || H5Pget_external_count(properties) != 0 ||
-        H5Dget_storage_size(set) != bytes || (bytes > 0 && H5Dget_offset(set) > size_ - bytes) || bytes > size_)
-      fail(fmt::format("dataset {} is not stored as a snapshot's", name));
+    const bool contiguous = H5Pget_layout(properties) == H5D_CONTIGUOUS && H5Pget_external_count(properties) == 0;
+    if (!contiguous || rows > size_ / row_bytes || H5Dget_storage_size(set) != rows * row_bytes ||
+        (rows > 0 && H5Dget_offset(set) > size_ - rows * row_bytes))
+      fail(fmt::format("dataset {} is not stored in one piece", name));
   }
 
   // Rows and columns; 0 columns for a one-dimensional dataset.
@@ -479,11 +480,14 @@ SnapshotHeader read_snapshot(MPI_Comm comm, const std::string& path, Particles<D
     const std::int64_t all = file.rows("/VTKHDF/Points");
     const std::int64_t first = all * rank_of(comm) / ranks_of(comm);
     const std::int64_t count = all * (rank_of(comm) + 1) / ranks_of(comm) - first;
-    const auto field = [&]<class T>(const char* name, T) {
-      return file.dataset<T>(std::string(point_data) + name, first, count);
+    const auto read = [&]<class T>(const std::string& name, T, int columns = 0) {
+      if (const auto rows = file.rows(name); rows != all)
+        file.fail(fmt::format("dataset {} has {} rows, not {} as /VTKHDF/Points", name, rows, all));
+      return file.dataset<T>(name, first, count, columns);
     };
-    const auto position = file.dataset<double>("/VTKHDF/Points", first, count, 3);
-    const auto velocity = file.dataset<double>(std::string(point_data) + "velocity", first, count, 3);
+    const auto field = [&](const char* name, auto type) { return read(std::string(point_data) + name, type); };
+    const auto position = read("/VTKHDF/Points", double{}, 3);
+    const auto velocity = read(std::string(point_data) + "velocity", double{}, 3);
     const auto type = field("type", std::uint8_t{});
     particles = {};
     particles.owned = static_cast<int>(count);
