@@ -506,7 +506,8 @@ void CaseReader::collect(const std::string& prefix, const toml::table& table, co
   for (const auto& [name, node] : table) {
     const std::string key = prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
     const toml::table* inner = node.as_table();
-    if (inner && !find_key(key)) {
+    const bool deep = std::ranges::count(key, '.') > 8;  // no key is: spare the stack
+    if (inner && !find_key(key) && !deep) {
       collect(key, *inner, place);
     } else {
       add_entry(key, node, place);
@@ -572,6 +573,7 @@ std::string CaseReader::put(const Key& key, const toml::node& node) {
           if (target.find('\0') != target.npos) return "has a null character";
           if (key.name == "name" && target.find('/') != target.npos) return "has a '/', but file names are made of it";
           if (key.name == "name" && target.size() > 200) return "longer than 200 bytes, but file names are made of it";
+          if (in_quotes(target).size() > 4096) return "longer than 4096 bytes";
           return "";
         } else {
           if (!node.is_string()) return wrong_type();

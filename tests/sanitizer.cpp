@@ -18,10 +18,13 @@ const char* __lsan_default_suppressions() {
   return "leak:libmpi.so\n"
          "leak:libopen-rte.so\n"
          "leak:libopen-pal.so\n"
+         "leak:libpmix.so\n"
          "leak:/openmpi/lib/\n"
          "leak:libhdf5_openmpi.so\n";
 }
 
+/// HDF5 asks for as much memory as a damaged file says, and does without.
+const char* __asan_default_options() { return "allocator_may_return_null=1"; }
 const char* __lsan_default_options() { return "print_suppressions=0"; }
 const char* __ubsan_default_options() { return "print_stacktrace=1"; }
 }
