@@ -19,6 +19,7 @@ const char* __lsan_default_suppressions() {
          "leak:libopen-rte.so\n"
          "leak:libopen-pal.so\n"
          "leak:libpmix.so\n"
+         "leak:libmca_\n"
          "leak:/openmpi/lib/\n"
          "leak:libhdf5_openmpi.so\n";
 }

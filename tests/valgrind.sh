@@ -16,11 +16,14 @@ rm -rf "$root"
 mkdir -p "$root"
 export OMPI_MCA_mpi_yield_when_idle=1
 code=0
-# H/dp = 5, 20 steps, 3 snapshots with the averaged wall pressure.
+# H/dp = 5, 25 steps, 3 snapshots with the averaged wall pressure.
 run_mpi 2 valgrind --error-exitcode=9 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite \
-  --num-callers=30 --suppressions=/usr/share/openmpi/openmpi-valgrind.supp --suppressions=tests/valgrind.supp \
-  --log-file="$root/rank-%q{OMPI_COMM_WORLD_RANK}.log" \
+  --num-callers=40 --keep-debuginfo=yes --suppressions=/usr/share/openmpi/openmpi-valgrind.supp \
+  --suppressions=tests/valgrind.supp --log-file="$root/rank-%q{OMPI_COMM_WORLD_RANK}.log" \
   "$bin/impinge" input/jet60-quick.toml --set particles.spacing=0.08 --set time.dt=0.01 --set time.end=0.2 \
-  --set output.interval=0.1 --set output.average_start=0.05 --set output.directory="$root/run" || code=$?
-grep -h -E 'ERROR SUMMARY|definitely lost|suppressed:' "$root"/rank-*.log
-[ $code -eq 0 ] || { echo "tests/valgrind.sh: see $root/rank-*.log" >&2; exit 1; }
+  --set output.interval=0.1 --set output.average_start=0.05 --set "output.directory=$root/run" || code=$?
+grep -H -E 'ERROR SUMMARY|definitely lost:' "$root"/rank-*.log
+if [ $code -ne 0 ]; then
+  echo "tests/valgrind.sh: see $root/rank-*.log" >&2
+  exit 1
+fi

@@ -373,6 +373,9 @@ TEST(Config, RefusesMalformedTomlWithItsLine) {
       {"name = \"\xff\xfe\"", "1: not TOML: "},
       {"# \xc3(\n", "1: not TOML: "},
       {"name = \"\x01\"", "1: not TOML: "},
+      {"time.dt = 0.1\u0366", "1: not TOML: "},
+      {"time.dt = 0.1\u1234", "1: not TOML: "},
+      {"tank.size = [0.2, 0.\ufffd]", "1: not TOML: "},
       // Nested without end.
       {"name = " + std::string(1000, '['), "1: not TOML: "},
       {"\n" + std::string(10000, 'a') + " = 1", "2: not TOML: a line of more than 8192 characters"},
