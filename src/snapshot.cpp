@@ -281,7 +281,7 @@ class Reader {
     return code;
   }
 
-  // HDF5 itself trusts metadata of the oldest form, which have no checksums.
+  // HDF5 trusts metadata of the oldest form, which have no checksums, and may crash where they are damaged.
   void check_signature() {
     std::error_code error;
     size_ = fs::file_size(path_, error);
@@ -289,7 +289,7 @@ class Reader {
     std::array<char, 9> start{};
     std::ifstream(path_, std::ios::binary).read(start.data(), start.size());
     if (!std::string_view(start.data(), start.size()).starts_with("\x89HDF\r\n\x1a\n")) fail("not an HDF5 file");
-    if (start[8] < 2) fail("not a snapshot of Impinge");
+    if (start[8] < 2) fail("not a snapshot of Impinge, or one whose metadata have no checksums yet");
   }
 
   // The values stand in one piece within the file.
