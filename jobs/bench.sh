@@ -25,7 +25,7 @@ cold=("$@")
 set_up
 
 root=output/bench
-tests=build/release/tests
+tests=build/$preset/tests
 mkdir -p "$root"
 if [ "$kernels" ]; then
   "$tests/kernel_bench" --benchmark_min_time=0.2 | tee "$root/kernels.txt"

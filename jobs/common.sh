@@ -5,13 +5,15 @@ if [ "$(id -u)" -eq 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
 
-bin=build/release/bin
+# The presets build into directories of their own.
+preset=${IMPINGE_PRESET:-release}
+bin=build/$preset/bin
 
 # Installs what is missing, configures and builds.
 set_up() {
   jobs/install.sh
-  cmake --preset "${IMPINGE_PRESET:-release}" -Wno-dev --log-level=WARNING
-  cmake --build --preset "${IMPINGE_PRESET:-release}"
+  cmake --preset "$preset" -Wno-dev --log-level=WARNING
+  cmake --build --preset "$preset"
 }
 
 # run_mpi RANKS COMMAND...

@@ -3,6 +3,7 @@
 # As root or as a user with sudo. Where apt is not at hand it says what is missing and stops.
 # Usage: jobs/install.sh            install what is missing
 #        jobs/install.sh --list     print the packages and stop
+#        jobs/install.sh --tools    install what tests/fuzz.sh and tests/valgrind.sh need besides
 set -euo pipefail
 
 packages=(
@@ -12,8 +13,11 @@ packages=(
   libgtest-dev libbenchmark-dev clang-format
   python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9
 )
+tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg)
 
-if [ "${1:-}" = --list ]; then
+if [ "${1:-}" = --tools ]; then
+  packages+=("${tools[@]}")
+elif [ "${1:-}" = --list ]; then
   printf '%s\n' "${packages[@]}"
   exit 0
 fi

@@ -188,7 +188,7 @@ const std::vector<Key>& keys() {
 
       {IMPINGE_KEY(jet.width), jet, "m", positive, required, "jet width H, a multiple of dp"},
       {IMPINGE_KEY(jet.speed), jet, "m/s", positive, required, "jet speed U"},
-      {IMPINGE_KEY(jet.angle), jet, "deg", above_to(0, 90), required, "angle between jet and plate"},
+      {IMPINGE_KEY(jet.angle), jet, "deg", from_to(1, 90), required, "angle between jet and plate"},
       {IMPINGE_KEY(jet.inlet_distance), jet, "H", positive, "",
        "distance of the inlet from the plate along the jet's axis"},
       {IMPINGE_KEY(jet.start), jet, "", {}, "", "impact: a column about to hit the plate; steady: the analytic jet"},
@@ -351,7 +351,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string suggestion(std::string_view unknown) {
   const auto last_part = [](std::string_view name) { return name.substr(name.rfind('.') + 1); };
   const auto distance = [&](const Key& key) {
-    const std::size_t whole = edit_distance(unknown, key.name);
+    const bool near = unknown.size() <= 2 * key.name.size();
+    const std::size_t whole = near ? edit_distance(unknown, key.name) : unknown.size();
     return last_part(unknown) == last_part(key.name) ? std::min<std::size_t>(whole, 2) : whole;
   };
   const auto nearest = std::ranges::min_element(keys(), {}, distance);
@@ -367,6 +368,21 @@ std::string suggestion(std::string_view unknown) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Reading.
+
+/// The text as a table. Throws toml::parse_error, also where a line is longer than any honest one: the tables of a
+/// dotted key are nested, and thousands of them overflow the stack.
+toml::table parse_toml(std::string_view text, std::string_view name) {
+  constexpr std::size_t longest = 8192;
+  toml::source_position place{1, 1};
+  for (std::string_view rest = text; rest.size() > longest; ++place.line) {
+    const auto end = rest.find('\n');
+    if (std::min(end, rest.size()) > longest) {
+      throw toml::parse_error("a line of more than 8192 characters", place, std::make_shared<const std::string>(name));
+    }
+    rest.remove_prefix(end + 1);
+  }
+  return toml::parse(text, name);
+}
 
 /// Where a key was given. Orders the mistakes: command line, then the case file, then the files it includes.
 struct Place {
@@ -423,6 +439,7 @@ class CaseReader {
   void derive_max_speed();
   void derive_plate();
   void check_any();
+  void check_defaults();
   void check_count(double volume);
   void check_jet();
   void check_multiples(std::string_view name, std::span<const double> lengths);
@@ -440,7 +457,7 @@ void CaseReader::add_file(const NamedText& file) {
   files_.push_back({.file = files_.size() + 1, .name = file.first});
   Place place = files_.back();
   try {
-    texts_.push_back(std::make_unique<toml::table>(toml::parse(file.second, file.first)));
+    texts_.push_back(std::make_unique<toml::table>(parse_toml(file.second, file.first)));
     collect("", *texts_.back(), place);
   } catch (const toml::parse_error& error) {
     place.line = error.source().begin.line;
@@ -470,7 +487,7 @@ void CaseReader::add_setting(const std::string& setting, std::size_t number) {
   auto table = std::make_unique<toml::table>();
   if (!bare) {
     try {
-      *table = toml::parse(fmt::format("value = {}", text));
+      *table = parse_toml(fmt::format("value = {}", text), place.name);
     } catch (const toml::parse_error&) {
       table->clear();
     }
@@ -489,7 +506,8 @@ void CaseReader::collect(const std::string& prefix, const toml::table& table, co
   for (const auto& [name, node] : table) {
     const std::string key = prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
     const toml::table* inner = node.as_table();
-    if (inner && !find_key(key)) {
+    const bool deep = std::ranges::count(key, '.') > 8;  // no key is: spare the stack
+    if (inner && !find_key(key) && !deep) {
       collect(key, *inner, place);
     } else {
       add_entry(key, node, place);
@@ -552,7 +570,10 @@ std::string CaseReader::put(const Key& key, const toml::node& node) {
           if (!node.is_string()) return wrong_type();
           target = node.as_string()->get();
           if (target.empty()) return "empty";
+          if (target.find('\0') != target.npos) return "has a null character";
           if (key.name == "name" && target.find('/') != target.npos) return "has a '/', but file names are made of it";
+          if (key.name == "name" && target.size() > 200) return "longer than 200 bytes, but file names are made of it";
+          if (in_quotes(target).size() > 4096) return "longer than 4096 bytes";
           return "";
         } else {
           if (!node.is_string()) return wrong_type();
@@ -788,6 +809,16 @@ void CaseReader::complete() {
   }
 }
 
+/// Extreme values that are allowed by themselves may have defaults that are not.
+void CaseReader::check_defaults() {
+  for (const Key& key : keys()) {
+    const auto* member = std::get_if<Member<double>>(&key.member);
+    if (!member || given(key.name) || !usable({key.name})) continue;
+    if (key.range.contains((*member)(config_))) continue;
+    mistake(key.name, fmt::format("such a default follows from the other keys; allowed: {}", allowed_text(key)));
+  }
+}
+
 void CaseReader::throw_mistakes() {
   if (mistakes_.empty()) return;
   std::ranges::stable_sort(mistakes_, [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -810,22 +841,32 @@ std::string resolved_text(Config& config) {
 
 Config CaseReader::finish() {
   throw_mistakes();
+  check_defaults();
+  throw_mistakes();
   config_.resolved_text = resolved_text(config_);
   return std::move(config_);
 }
 
 /// A file's text, or the reason why it cannot be read.
 std::optional<std::string> read_text(const fs::path& path, std::string& reason) {
-  if (fs::is_directory(path)) {
-    reason = "is a directory";
-    return {};
-  }
+  constexpr std::size_t largest = 1 << 20;
+  std::error_code error;
+  std::string text(largest + 1, '\0');
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    reason = std::strerror(errno);
-    return {};
+  const bool open = stream.is_open();
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  const int code = errno;
+  if (fs::is_directory(path, error)) {
+    reason = "is a directory";
+  } else if (!open || stream.bad()) {
+    reason = std::strerror(code);
+  } else if (!stream.eof()) {
+    reason = fmt::format("larger than {} bytes", largest);
+  } else {
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
   }
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  return {};
 }
 
 }  // namespace
@@ -849,13 +890,15 @@ std::vector<NamedText> load_case_files(const std::string& path) {
   Place place{.name = path};  // of the `include` that names `next`
   std::string key;            // "include = ...: "
   while (true) {
-    if (!seen.insert(fs::weakly_canonical(next)).second) fail(place, key + "the files include each other in a circle");
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(next, error);
+    if (!seen.insert(error ? next : canonical).second) fail(place, key + "the files include each other in a circle");
     std::string reason;
     const std::optional<std::string> text = read_text(next, reason);
     if (!text) fail(place, fmt::format("{}cannot read {}: {}", key, next.string(), reason));
     files.emplace_back(next.string(), *text);
     try {
-      const toml::table table = toml::parse(*text);
+      const toml::table table = parse_toml(*text, next.string());
       const toml::node* include = table.get("include");
       if (!include || !include->is_string()) return files;
       const std::string& name = include->as_string()->get();

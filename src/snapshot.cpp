@@ -10,8 +10,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "impinge/parallel.hpp"
@@ -64,6 +66,7 @@ hid_t native_type() {
 class QuietErrors {
  public:
   QuietErrors() {
+    H5dont_atexit();  // every file is closed here; what HDF5 itself keeps of a damaged one it cannot close at the exit
     H5open();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -105,6 +108,7 @@ class Writer {
   Writer(MPI_Comm comm, std::string path) : comm_(comm), path_(std::move(path)), partial_(path_ + ".partial") {
     const Properties access(H5Pcreate(H5P_FILE_ACCESS));
     keep(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL));
+    keep(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18));  // its metadata have checksums
     file_ = File(keep(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)));
     transfer_ = Properties(H5Pcreate(H5P_DATASET_XFER));
     keep(H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE));
@@ -204,7 +208,7 @@ class Writer {
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {
-    if (!fs::exists(path)) fail("no such file");
+    check_signature();
     file_ = File(need(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)));
     if (H5Aexists(file_, "format_version") <= 0 || H5Lexists(file_, "VTKHDF", H5P_DEFAULT) <= 0)
       fail("not a snapshot of Impinge");
@@ -216,18 +220,22 @@ class Reader {
   template <class T>
   T number(const char* name) const {
     T value{};
-    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT), name));
     const Dataspace space(need(H5Aget_space(attribute)));
-    if (H5Sget_simple_extent_npoints(space) != 1) fail(fmt::format("attribute {} is not a single number", name));
+    const Datatype type(need(H5Aget_type(attribute)));
+    if (H5Sget_simple_extent_npoints(space) != 1 || H5Tequal(type, native_type<T>()) <= 0)
+      fail(fmt::format("attribute {} is not a single number of its type", name));
     need(H5Aread(attribute, native_type<T>(), &value));
     return value;
   }
 
   std::string text(const char* name) const {
-    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT)));
+    const Attribute attribute(need(H5Aopen(file_, name, H5P_DEFAULT), name));
     const Datatype type(need(H5Aget_type(attribute)));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    const Dataspace space(need(H5Aget_space(attribute)));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1)
       fail(fmt::format("attribute {} is not a text of fixed length", name));
+    if (H5Tget_size(type) > size_) fail(fmt::format("attribute {} is longer than the file", name));
     std::string value(H5Tget_size(type), '\0');
     need(H5Aread(attribute, type, value.data()));
     value.erase(std::find(value.begin(), value.end(), '\0'), value.end());
@@ -235,7 +243,7 @@ class Reader {
   }
 
   std::int64_t rows(const std::string& name) const {
-    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), name));
     return extent(set, name)[0];
   }
 
@@ -243,10 +251,13 @@ class Reader {
   template <class T>
   std::vector<T> dataset(const std::string& name, std::int64_t first, std::int64_t count, int columns = 0) const {
     const auto width = static_cast<hsize_t>(std::max(columns, 1));
-    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)));
+    const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), name));
     const auto whole = extent(set, name);
     if (first + count > whole[0] || whole[1] != columns)
       fail(fmt::format("dataset {} has {} x {} entries", name, whole[0], whole[1]));
+    const Datatype type(need(H5Dget_type(set)));
+    if (H5Tequal(type, native_type<T>()) <= 0) fail(fmt::format("dataset {} has another type", name));
+    check_storage(set, name, static_cast<hsize_t>(whole[0]), width * sizeof(T));
     std::vector<T> values(static_cast<std::size_t>(count) * width);
     if (count == 0) return values;
     const int rank = columns > 0 ? 2 : 1;
@@ -265,9 +276,29 @@ class Reader {
 
  private:
   template <class Code>
-  Code need(Code code) const {
-    if (code < 0) fail(hdf5_reason());
+  Code need(Code code, const std::string& name = "") const {
+    if (code < 0) fail(fmt::format("{}{}{}", name, name.empty() ? "" : ": ", hdf5_reason()));
     return code;
+  }
+
+  // HDF5 trusts metadata of the oldest form, which have no checksums, and may crash where they are damaged.
+  void check_signature() {
+    std::error_code error;
+    size_ = fs::file_size(path_, error);
+    if (error) fail(error == std::errc::no_such_file_or_directory ? "no such file" : error.message());
+    std::array<char, 9> start{};
+    std::ifstream(path_, std::ios::binary).read(start.data(), start.size());
+    if (!std::string_view(start.data(), start.size()).starts_with("\x89HDF\r\n\x1a\n")) fail("not an HDF5 file");
+    if (start[8] < 2) fail("not a snapshot of Impinge, or one whose metadata have no checksums yet");
+  }
+
+  // The values stand in one piece within the file.
+  void check_storage(hid_t set, const std::string& name, hsize_t rows, hsize_t row_bytes) const {
+    const Properties properties(need(H5Dget_create_plist(set)));
+    const bool contiguous = H5Pget_layout(properties) == H5D_CONTIGUOUS && H5Pget_external_count(properties) == 0;
+    if (!contiguous || rows > size_ / row_bytes || H5Dget_storage_size(set) != rows * row_bytes ||
+        (rows > 0 && H5Dget_offset(set) > size_ - rows * row_bytes))
+      fail(fmt::format("dataset {} is not stored in one piece", name));
   }
 
   // Rows and columns; 0 columns for a one-dimensional dataset.
@@ -282,6 +313,7 @@ class Reader {
 
   QuietErrors quiet_;
   std::string path_;
+  std::uintmax_t size_ = 0;
   File file_;
 };
 
@@ -448,11 +480,14 @@ SnapshotHeader read_snapshot(MPI_Comm comm, const std::string& path, Particles<D
     const std::int64_t all = file.rows("/VTKHDF/Points");
     const std::int64_t first = all * rank_of(comm) / ranks_of(comm);
     const std::int64_t count = all * (rank_of(comm) + 1) / ranks_of(comm) - first;
-    const auto field = [&]<class T>(const char* name, T) {
-      return file.dataset<T>(std::string(point_data) + name, first, count);
+    const auto read = [&]<class T>(const std::string& name, T, int columns = 0) {
+      if (const auto rows = file.rows(name); rows != all)
+        file.fail(fmt::format("dataset {} has {} rows, not {} as /VTKHDF/Points", name, rows, all));
+      return file.dataset<T>(name, first, count, columns);
     };
-    const auto position = file.dataset<double>("/VTKHDF/Points", first, count, 3);
-    const auto velocity = file.dataset<double>(std::string(point_data) + "velocity", first, count, 3);
+    const auto field = [&](const char* name, auto type) { return read(std::string(point_data) + name, type); };
+    const auto position = read("/VTKHDF/Points", double{}, 3);
+    const auto velocity = read(std::string(point_data) + "velocity", double{}, 3);
     const auto type = field("type", std::uint8_t{});
     particles = {};
     particles.owned = static_cast<int>(count);

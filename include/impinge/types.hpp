@@ -64,7 +64,7 @@ struct Matrix {
   }
 
   friend Matrix operator*(double factor, Matrix m) {
-    for (Vec<Dim>& row : m.row) row *= factor;
+    for (Vec<Dim>& r : m.row) r *= factor;
     return m;
   }
   friend Vec<Dim> operator*(const Matrix& m, const Vec<Dim>& v) {

@@ -74,11 +74,29 @@ class CommandLine(System):
             ("particles.spacing = -0.02", "case.toml:2: particles.spacing = -0.02: out of range; allowed: > 0 (m)"),
             ("plate.begin = 0.5\nplate.end = 0.8", "case.toml:2: plate.begin = 0.5"),
             ("output.directory = '/proc/nowhere'", 'case.toml:2: output.directory = "/proc/nowhere": cannot write there'),
+            ("[time\nend = 1", "case.toml:2: not TOML: "),
+            ("name = '\x01'", "case.toml:2: not TOML: "),
         ):
             for ranks in (0, 2):
                 done = impinge(self.case(text), cwd=self.directory, ranks=ranks)
                 self.assertEqual(done.returncode, 2, f"{text}: {done.stderr}")
                 self.assertEqual(done.stderr.count(message), 1, f"{text}: {done.stderr}")
+
+    def test_files_that_are_no_case(self):
+        empty, binary = self.directory / "empty.toml", self.directory / "binary.toml"
+        empty.write_bytes(b"")
+        binary.write_bytes(bytes(range(256)) * 16)
+        for path, message in (
+            (empty, f"{empty}: geometry: required key is missing"),
+            (binary, f"{binary}:1: not TOML: "),
+            (self.directory, "is a directory"),
+            ("/dev/zero", "larger than 1048576 bytes"),
+            (self.directory / ("x" * 300), "File name too long"),
+        ):
+            for ranks in (0, 2):
+                done = impinge(path, ranks=ranks)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stderr.count(message), 1, done.stderr)
 
     def test_all_mistakes_at_once(self):
         done = impinge(self.case("speed = 1\npressure.gamma = 7"), "--set", "time.dt=-1")
@@ -255,6 +273,29 @@ class Run(System):
         for name in ("pressure.png", "wall_pressure.png", "film_thickness.png", "ranks.png", "wall_pressure.csv",
                      "film_thickness.csv"):
             self.assertTrue((validation / name).stat().st_size > 0, name)
+
+    def test_validation_names_a_snapshot_that_it_cannot_read(self):
+        self.run_case("--set", "time.end=0.004")
+        last = self.snapshots()[-1]
+        sound = last.read_bytes()
+        with h5py.File(self.directory / "foreign.h5", "w") as file:
+            file["data"] = [1.0]
+        with h5py.File(last, "r+") as file:
+            del file["VTKHDF/PointData/velocity"]
+        for text, reason in (
+            (last.read_bytes(), "/VTKHDF/PointData/velocity"),
+            (b"", "not an HDF5 file"),
+            (b"x" * 1000, "not an HDF5 file"),
+            (sound[:100], ""),
+            (sound[: len(sound) // 2], ""),
+            (sound[:-1], ""),
+            ((self.directory / "foreign.h5").read_bytes(), "not a snapshot of Impinge"),
+        ):
+            last.write_bytes(text)
+            done = call(BIN / "impinge-validate", "out", "--no-figures", cwd=self.directory)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn(f"cannot read out/{last.name}: ", done.stderr)
+            self.assertIn(reason, done.stderr)
 
     def test_validation_refuses_what_is_no_run(self):
         done = call(BIN / "impinge-validate", self.directory)

@@ -242,8 +242,8 @@ TEST(Config, FindsNumbersOutOfRange) {
             Texts{"case.toml:1: pressure.gamma = 1.5: out of range; allowed: [0, 1]"});
   EXPECT_EQ(mistakes_in("pressure.tolerance = 1e-5"),
             Texts{"case.toml:1: pressure.tolerance = 1e-05: out of range; allowed: (0, 1e-06]"});
-  EXPECT_EQ(mistakes_in("jet.angle = 91"), Texts{"case.toml:1: jet.angle = 91: out of range; allowed: (0, 90] (deg)"});
-  EXPECT_EQ(mistakes_in("jet.angle = 0"), Texts{"case.toml:1: jet.angle = 0: out of range; allowed: (0, 90] (deg)"});
+  EXPECT_EQ(mistakes_in("jet.angle = 91"), Texts{"case.toml:1: jet.angle = 91: out of range; allowed: [1, 90] (deg)"});
+  EXPECT_EQ(mistakes_in("jet.angle = 0"), Texts{"case.toml:1: jet.angle = 0: out of range; allowed: [1, 90] (deg)"});
   EXPECT_EQ(mistakes_in("dimension = 4"), Texts{"case.toml:1: dimension = 4: out of range; allowed: [2, 3]"});
   EXPECT_EQ(mistakes_in("kernel.laplacian_radius = 6.5"),
             Texts{"case.toml:1: kernel.laplacian_radius = 6.5: out of range; allowed: (1, 6] (dp)"});
@@ -301,7 +301,7 @@ TEST(Config, FindsMissingKeys) {
                    "case.toml: time.dt: required key is missing; allowed: > 0 (s)",
                    "case.toml: jet.width: required key is missing; allowed: > 0 (m)",
                    "case.toml: jet.speed: required key is missing; allowed: > 0 (m/s)",
-                   "case.toml: jet.angle: required key is missing; allowed: (0, 90] (deg)"}));
+                   "case.toml: jet.angle: required key is missing; allowed: [1, 90] (deg)"}));
   EXPECT_EQ(mistakes([] {
               parse_case({{"case.toml", ""}});
             }).front(),
@@ -313,6 +313,145 @@ TEST(Config, FindsWhatIsNotToml) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0].starts_with("case.toml:2: not TOML: ")) << found[0];
   EXPECT_TRUE(mistakes_in("time.dt = 1\ntime.dt = 2").at(0).starts_with("case.toml:2: not TOML: "));
+}
+
+struct Malformed {
+  std::string text;
+  std::string message;  // the first mistake begins with this
+};
+
+void expect_refused(const std::vector<Malformed>& table, const NamedText& base) {
+  for (const auto& [text, message] : table) {
+    const Texts found = mistakes_in(text, base);
+    ASSERT_FALSE(found.empty()) << text.substr(0, 100);
+    EXPECT_TRUE(found[0].starts_with("case.toml:" + message)) << found[0].substr(0, 200);
+  }
+}
+
+TEST(Config, RefusesMalformedTomlWithItsLine) {
+  const std::vector<Malformed> table{
+      {"time.dt", "1: not TOML: "},
+      {"time.dt =", "1: not TOML: "},
+      {"= 1", "1: not TOML: "},
+      {"time.dt = 1 2", "1: not TOML: "},
+      {"time.dt = 1 time.end = 2", "1: not TOML: "},
+      {"\n\nname = \"open", "3: not TOML: "},
+      {"name = 'open", "1: not TOML: "},
+      {"name = \"\"\"open\n\n", "2: not TOML: "},
+      {"name = \"\\q\"", "1: not TOML: "},
+      {"name = \"\\uD800\"", "1: not TOML: "},
+      {"name = \"a\nb\"", "1: not TOML: "},
+      {"name = bare", "1: not TOML: "},
+      {"[time", "1: not TOML: "},
+      {"[time]]", "1: not TOML: "},
+      {"[]", "1: not TOML: "},
+      {"time = {dt = 1", "1: not TOML: "},
+      {"tank.size = [0.2, 0.3", "1: not TOML: "},
+      {"tank.size = [0.2 0.3]", "1: not TOML: "},
+      // Twice.
+      {"name = \"a\"\nname = \"b\"", "2: not TOML: "},
+      {"[time]\ndt = 1\n[time]\nend = 1", "3: not TOML: "},
+      {"time = {dt = 1}\ntime.end = 1", "2: not TOML: "},
+      {"time = 1\ntime.end = 1", "2: not TOML: "},
+      {"[time]\n[[time]]", "2: not TOML: "},
+      // Numbers.
+      {"time.dt = 1.", "1: not TOML: "},
+      {"time.dt = .5", "1: not TOML: "},
+      {"time.dt = 1e", "1: not TOML: "},
+      {"time.dt = 0x", "1: not TOML: "},
+      {"time.dt = 1__0", "1: not TOML: "},
+      {"dimension = 02", "1: not TOML: "},
+      {"dimension = 9223372036854775808", "1: not TOML: "},
+      {"dimension = -9223372036854775809", "1: not TOML: "},
+      // What is no text.
+      {std::string("name = \"a\0b\"", 12), "1: not TOML: "},
+      {std::string("\x7f"
+                   "ELF\x02\x01\x01\0\0\0\0",
+                   11),
+       "1: not TOML: "},
+      {std::string("\x89HDF\r\n\x1a\n", 8), "1: not TOML: "},
+      {"name = \"\xff\xfe\"", "1: not TOML: "},
+      {"# \xc3(\n", "1: not TOML: "},
+      {"name = \"\x01\"", "1: not TOML: "},
+      {"time.dt = 0.1\u0366", "1: not TOML: "},
+      {"time.dt = 0.1\u1234", "1: not TOML: "},
+      {"tank.size = [0.2, 0.\ufffd]", "1: not TOML: "},
+      // Nested without end.
+      {"name = " + std::string(1000, '['), "1: not TOML: "},
+      {"\n" + std::string(10000, 'a') + " = 1", "2: not TOML: a line of more than 8192 characters"},
+  };
+  expect_refused(table, jet_base);
+}
+
+TEST(Config, RefusesValuesThatNoRunCouldUse) {
+  const std::vector<Malformed> jet{
+      {"dimension = -2", "1: dimension = -2: out of range; allowed: [2, 3]"},
+      {"dimension = 9223372036854775807", "1: dimension = 9223372036854775807: out of range; allowed: [2, 3]"},
+      {"dimension = \"2\"", "1: dimension = \"2\": not an integer; allowed: [2, 3]"},
+      {"time.end = -1", "1: time.end = -1: out of range; allowed: > 0 (s)"},
+      {"time.end = -inf", "1: time.end = -inf: not a finite number; allowed: > 0 (s)"},
+      {"time.dt = 1e999", "1: not TOML: "},
+      {"time.dt = -0.0", "1: time.dt = -0.0: out of range; allowed: > 0 (s)"},
+      {"time.dt = 1979-05-27", "1: time.dt = 1979-05-27: not a number; allowed: > 0 (s)"},
+      {"time.dt = 07:32:00", "1: time.dt = 07:32:00: not a number; allowed: > 0 (s)"},
+      {"time.dt = []", "1: time.dt = []: not a number; allowed: > 0 (s)"},
+      {"time.dt.s = 1", "1: time.dt = {...}: not a number; allowed: > 0 (s)"},
+      {"[[time.dt]]", "1: time.dt = [{...}]: not a number; allowed: > 0 (s)"},
+      {"time.max_speed = nan", "1: time.max_speed = nan: not a finite number; allowed: > 0 (m/s)"},
+      {"output.interval = -0.1", "1: output.interval = -0.1: out of range; allowed: >= 0 (s)"},
+      {"parallel.imbalance = 0", "1: parallel.imbalance = 0: out of range; allowed: [1, 100]"},
+      {"fluid.gravity = [0, nan]",
+       "1: fluid.gravity = [0, nan]: not a finite number; allowed: one per dimension, each"},
+      {"fluid.gravity = []", "1: fluid.gravity = []: has 0 numbers, but the dimension is 2; allowed: "},
+      {"fluid.gravity = [[0, 1], 2]", "1: fluid.gravity = [[0, 1], 2]: not an array of numbers; allowed: "},
+      {"pressure.clamp_negative = \"false\"", "1: pressure.clamp_negative = \"false\": not a boolean; allowed: true"},
+      // Too shallow for the inlet to stand anywhere near.
+      {"jet.angle = 0.01", "1: jet.angle = 0.01: out of range; allowed: [1, 90] (deg)"},
+      // Text.
+      {"größe = 1", "1: not TOML: "},
+      {"\"größe\" = 1", "1: größe = 1: unknown key"},
+      {"kernel.type = \"sïngular\"", "1: kernel.type = \"sïngular\": unknown word; allowed: \"non_singular\""},
+      {"name = \"a\\u0000b\"", "1: name = \"a\\u0000b\": has a null character; allowed: not empty"},
+      {"output.directory = \"a\\u0000b\"", "1: output.directory = \"a\\u0000b\": has a null character; allowed: "},
+      {"name = \"" + std::string(201, 'a') + "\"", "1: name = \"aaa"},
+      {"output.directory = \"" + std::string(4096, 'a') + "\"", "1: output.directory = \"aaa"},
+      {std::string(8000, 'a') + " = 1", "1: aaa"},
+      {"\"\" = 1", "1:  = 1: unknown key"},
+      // What keys say together.
+      {"scheme = \"paper\"\nwalls.model = \"mirror\"\njet.start = \"steady\"\nplate.begin = 0.1",
+       "4: plate.begin = 0.1: "},
+      {"free_surface = {surface_density = 0.9, interior_density = 0.8}",
+       "1: free_surface.surface_density = 0.9: larger than the interior's density; allowed: [0, 0.8] (n0)"},
+      {"kernel = {radius = 3, laplacian_radius = 2}",
+       "1: kernel.radius = 3.0: larger than the Laplacian's radius; allowed: (1, 2.0] (dp)"},
+  };
+  expect_refused(jet, jet_base);
+  const std::vector<Malformed> tank{
+      {"tank.size = [0.2]", "1: tank.size = [0.2]: has 1 numbers, but the dimension is 2; allowed: one per dimension"},
+      {"tank.size = [1e308, 1e308]", "1: tank.size = [1e+308, 1e+308]: 1e+308 m is inf particle spacings; allowed: "},
+  };
+  expect_refused(tank, tank_base);
+  EXPECT_EQ(mistakes_in("dimension = 3", tank_base).front(),
+            "base.toml:4: tank.size = [0.2, 0.3]: has 2 numbers, but the dimension is 3; allowed: one per dimension, "
+            "each > 0 (m)");
+  EXPECT_EQ(mistakes_in("fluid.viscosity = 1e300"),
+            Texts{"base.toml:3: time.dt = 0.0008: above the viscous limit 0.2 dp^2/nu; allowed: (0, 8e-305] (s)"});
+}
+
+TEST(Config, TablesNestedAsDeepAsALineAllowsAreUnknownKeys) {
+  std::string key = "a";
+  for (int depth = 1; depth < 4000; ++depth) key += ".a";
+  const Texts found = mistakes_in("[" + key + "]\n" + key + " = 1");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0], "case.toml:1: a.a.a.a.a.a.a.a.a.a = {...}: unknown key");
+}
+
+TEST(Config, DefaultsThatOverflowAreMistakes) {
+  EXPECT_EQ(mistakes_in("jet.speed = 1e308"),
+            Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
+  EXPECT_EQ(mistakes_in("periodic_box.shear_speed = 1e308", box_base),
+            Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
+  EXPECT_EQ(parse("jet.speed = 1e308\ntime.max_speed = 1.5e308").time.max_speed, 1.5e308);
 }
 
 TEST(Config, GathersEveryMistakeInTheOrderOfTheLines) {
@@ -333,7 +472,7 @@ average_start = 9.0
                           "case.toml:1: name = \"\": empty; allowed: not empty",
                           "case.toml:3: particles.spacing = -0.02: out of range; allowed: > 0 (m)",
                           "case.toml:5: jet.widht = 0.4: unknown key; did you mean jet.width?",
-                          "case.toml:6: jet.angle = \"steep\": not a number; allowed: (0, 90] (deg)",
+                          "case.toml:6: jet.angle = \"steep\": not a number; allowed: [1, 90] (deg)",
                           "case.toml:8: pressure.gamma = 2: out of range; allowed: [0, 1]",
                           "case.toml:10: output.average_start = 9.0: the average starts after the end; allowed: [0, "
                           "5.0) (s)",
@@ -509,7 +648,7 @@ TEST(Config, DescribeListsEveryKey) {
     for (const std::string& line : resolved_lines(parse("", base)))
       EXPECT_NE(text.find("  " + line.substr(0, line.find(" = ")) + " "), text.npos) << line;
   }
-  EXPECT_NE(text.find("(0, 90] (deg); required"), text.npos);
+  EXPECT_NE(text.find("[1, 90] (deg); required"), text.npos);
   EXPECT_NE(text.find("default \"non_singular\""), text.npos);
   EXPECT_NE(text.find("include = "), text.npos);
 }
@@ -533,6 +672,33 @@ TEST_F(CaseFiles, MissingFilesAreMistakes) {
             Texts{missing + ": cannot read " + missing + ": No such file or directory"});
   EXPECT_EQ(mistakes([&] { load_case_files(directory_); }),
             Texts{directory_.string() + ": cannot read " + directory_.string() + ": is a directory"});
+}
+
+TEST_F(CaseFiles, FilesThatCannotBeReadAreMistakes) {
+  const std::string file = path("case.toml");
+  const std::string line = file + ":1: include = ";
+  const auto include = [&](const std::string& name) {
+    write("case.toml", "include = \"" + name + "\"");
+    const Texts found = mistakes([&] { load_case_files(file); });
+    return found.empty() ? "" : found[0];
+  };
+  EXPECT_EQ(include("."), line + "\".\": cannot read " + path(".") + ": is a directory");
+  EXPECT_EQ(include(""), line + "\"\": cannot read " + path("") + ": is a directory");
+  EXPECT_EQ(include("case.toml"), line + "\"case.toml\": the files include each other in a circle");
+  EXPECT_EQ(include("./case.toml/"),
+            line + "\"./case.toml/\": cannot read " + path("./case.toml/") + ": Not a directory");
+  const std::string endless(5000, 'x');
+  EXPECT_EQ(include(endless), line + '"' + endless + "\": cannot read " + path(endless) + ": File name too long");
+  EXPECT_EQ(include("/dev/zero"), line + "\"/dev/zero\": cannot read /dev/zero: larger than 1048576 bytes");
+  EXPECT_EQ(include("/proc/self/mem"), line + "\"/proc/self/mem\": cannot read /proc/self/mem: Input/output error");
+  fs::create_symlink("loop", path("loop"));
+  EXPECT_EQ(include("loop"), line + "\"loop\": cannot read " + path("loop") + ": Too many levels of symbolic links");
+}
+
+TEST_F(CaseFiles, AnEmptyFileLacksItsKeys) {
+  const std::string file = write("case.toml", "");
+  EXPECT_EQ(mistakes([&] { parse_case(load_case_files(file)); }).at(0),
+            file + ": geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\"");
 }
 
 TEST_F(CaseFiles, AMissingIncludeComesWithTheOtherMistakes) {
