@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "impinge/cell_grid.hpp"
+#include "impinge/checkpoint.hpp"
 #include "impinge/petsc.hpp"
 #include "impinge/pressure.hpp"
 
@@ -36,6 +37,15 @@ class TwoLevelPreconditioner {
   void update(const PressureEquation& equation, std::span<const Vec<Dim>> position, std::span<const double> diagonal,
               int iterations);
 
+  /// This rank's rows of the coarse matrix, nothing where the next update renews it anyway; its age and iterations. Not
+  /// collective.
+  CoarseRows coarse_rows() const;
+  int age() const { return stale_ ? 0 : age_; }
+  int fresh_iterations() const { return fresh_iterations_; }
+
+  /// Takes the coarse matrix that another object had with the same owners. Collective.
+  void set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations);
+
   /// Makes `preconditioner` (a shell) this one. Collective.
   void attach(PC preconditioner);
 
@@ -62,7 +72,10 @@ class TwoLevelPreconditioner {
   Place place(const Vec<Dim>& position) const;
   void find_interpolation(const PressureEquation& equation, std::span<const Vec<Dim>> position);
   void sum_at_roots();  // leaf_value_ into root_value_
+  void find_coarse_rows();
   void number_nodes();
+  void create_coarse_matrix();
+  void finish_coarse_matrix();
   void build_coarse_matrix(const PressureEquation& equation, std::span<const Vec<Dim>> position);
   void apply(::Vec residual, ::Vec result);
 
@@ -70,6 +83,7 @@ class TwoLevelPreconditioner {
   CellGrid<Dim> cells_;
   std::vector<int> node_of_cell_;  // local node of a cell, -1 far from this rank
   std::vector<int> cell_of_node_;
+  std::vector<int> node_of_root_;
   std::size_t owned_cells_ = 0;
   PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
 

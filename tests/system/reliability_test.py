@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""A run is never lost: restarts, signals, faults. Usage: reliability_test.py BIN_DIRECTORY [unittest options]"""
+
+import csv
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree
+
+import h5py
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+QUICK = ROOT / "input/jet60-quick.toml"
+STOPPED = 4
+FIELDS = ("Points", "PointData/id", "PointData/velocity", "PointData/pressure", "PointData/pressure_impulse")
+
+
+def command(*words, ranks=2):
+    launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks else []
+    return [*launcher, str(BIN / "impinge"), *map(str, words)]
+
+
+class Reliability(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.directory = pathlib.Path(temporary.name)
+
+    def impinge(self, *words, ranks=2, code=0, environment=None):
+        done = subprocess.run(command(*words, ranks=ranks), cwd=self.directory, capture_output=True, text=True,
+                              timeout=120, check=False, env={**os.environ, **(environment or {})})
+        if code is not None:
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def run_case(self, out, *settings, **options):
+        words = [word for setting in (f"output.directory={out}", "time.end=0.1", "output.interval=0.03",
+                                      "output.average_start=0.05", *settings) for word in ("--set", setting)]
+        return self.impinge(QUICK, *words, **options)
+
+    def history(self, out):
+        with open(self.directory / out / "jet60-quick_history.csv", encoding="utf-8") as file:
+            return [{key: value for key, value in row.items() if key != "seconds"} for row in csv.DictReader(file)]
+
+    def files(self, out, ending):
+        return sorted((self.directory / out).glob(f"*.{ending}"))
+
+    def step_of(self, path):
+        return int(path.stem.split("_")[-1])
+
+    def expect_the_same_run(self, out, expected):
+        """Bitwise, but for the clock."""
+        self.assertEqual(self.history(out), self.history(expected))
+        snapshots = self.files(expected, "vtkhdf")
+        self.assertEqual([path.name for path in self.files(out, "vtkhdf")], [path.name for path in snapshots])
+        for path in snapshots:
+            with h5py.File(path) as a, h5py.File(self.directory / out / path.name) as b:
+                for name in FIELDS:
+                    np.testing.assert_array_equal(a["VTKHDF"][name][:], b["VTKHDF"][name][:], f"{path.name} {name}")
+        series = [(self.directory / name / "jet60-quick.xmf").read_text() for name in (out, expected)]
+        self.assertEqual(*series)
+        times = [float(time.get("Value")) for time in xml.etree.ElementTree.fromstring(series[0]).iter("Time")]
+        self.assertEqual(times, sorted(set(times)))
+        self.assertEqual(len(times), len(snapshots))
+
+
+class Restart(Reliability):
+    def test_goes_on_bitwise_and_keeps_the_last_two(self):
+        self.run_case("whole", "checkpoint.minutes=0")
+        self.assertEqual(self.files("whole", "checkpoint"), [])
+        steps = len(self.history("whole"))
+        self.run_case("out", "checkpoint.steps=17")
+        checkpoints = self.files("out", "checkpoint")
+        self.assertEqual([self.step_of(path) for path in checkpoints], [(steps - 1) // 17 * 17, steps])
+        self.expect_the_same_run("out", "whole")
+        checkpoints[-1].unlink()
+        done = self.impinge("--restart", "out")
+        self.assertIn(f"from step {self.step_of(checkpoints[0])}", done.stdout)
+        self.expect_the_same_run("out", "whole")
+        # The end is a checkpoint, too.
+        self.assertIn(f"from step {steps}", self.impinge("--restart", "out").stdout)
+        self.expect_the_same_run("out", "whole")
+
+    def test_prolongs_a_run_elsewhere_on_other_ranks_and_refuses_changes(self):
+        self.run_case("whole", "checkpoint.minutes=0", "pressure.tolerance=1e-12")
+        self.run_case("out", "time.end=0.05", "output.average_start=0.04", "pressure.tolerance=1e-12")
+        (self.directory / "out").rename(self.directory / "moved")
+        done = self.impinge("--restart", "moved", "--set", "particles.spacing=0.01", "--set", "time.end=0.1", code=2)
+        self.assertIn("--set: particles.spacing = 0.01: a restart cannot change this key; allowed: 0.02", done.stderr)
+        self.impinge("--restart", "moved", "--set", "time.end=0.1", "--set", "output.average_start=0.05", ranks=3)
+        self.assertFalse((self.directory / "out").exists())
+        history, expected = self.history("moved"), self.history("whole")
+        self.assertEqual([row["step"] for row in history], [row["step"] for row in expected])
+        for name in ("t", "kinetic_energy", "plate_force"):
+            self.assertAlmostEqual(float(history[-1][name]) / float(expected[-1][name]), 1.0, delta=1e-7)
+
+    def test_refuses_damaged_checkpoints_and_takes_the_one_before(self):
+        self.run_case("whole", "checkpoint.minutes=0")
+        self.run_case("out", "checkpoint.steps=20")
+        older, newer = self.files("out", "checkpoint")
+        whole = newer.read_bytes()
+        kept = older.read_bytes()
+
+        def damages():
+            yield "truncated", lambda: newer.write_bytes(whole[:-1000])
+            yield "cannot read", lambda: newer.write_bytes(b"")
+            yield "cannot read", lambda: newer.write_text("no HDF5 file")
+            yield "a snapshot, not a checkpoint", lambda: shutil.copy(self.files("out", "vtkhdf")[-1], newer)
+
+            def change_a_value():
+                newer.write_bytes(whole)
+                with h5py.File(newer, "r+") as file:
+                    file["VTKHDF/PointData/velocity"][3, 0] += 1e-9
+            yield "the checksum of /VTKHDF/PointData/velocity does not match", change_a_value
+
+            def rename_the_case():
+                newer.write_bytes(whole)
+                with h5py.File(newer, "r+") as file:
+                    file.attrs["case"] = np.bytes_(file.attrs["case"].replace(b'"jet60-quick"', b'"other"'))
+            yield "it is of the case other", rename_the_case
+
+        for reason, damage in damages():
+            older.write_bytes(kept)
+            damage()
+            done = self.impinge("--restart", "out")
+            self.assertEqual(done.stderr.count(reason), 1, done.stderr)
+            self.assertIn(f"out/{newer.name}", done.stderr)
+            self.assertIn(f"from step {self.step_of(older)}", done.stdout)
+            self.expect_the_same_run("out", "whole")
+
+        older.write_text("")
+        newer.write_text("")
+        done = self.impinge("--restart", "out", code=2)
+        self.assertIn("--restart out: no checkpoint there can be read", done.stderr)
+        self.expect_the_same_run("out", "whole")  # it is left as it was
+        for directory, reason in (("nowhere", "No such file or directory"), (".", "no checkpoint there")):
+            done = self.impinge("--restart", directory, code=2)
+            self.assertEqual(done.stderr.count(f"--restart {directory}: "), 1, done.stderr)
+            self.assertIn(reason, done.stderr)
+        shutil.copy(newer, newer.with_name("other_00000001.checkpoint"))
+        self.assertIn("several cases: jet60-quick, other", self.impinge("--restart", "out", code=2).stderr)
+
+    def test_a_new_run_replaces_the_checkpoints_of_the_last(self):
+        self.run_case("out", "checkpoint.steps=1")
+        (self.directory / "out/jet60-quick_00000099.checkpoint.partial").write_text("")
+        self.run_case("out", "checkpoint.minutes=0")
+        self.assertEqual(self.files("out", "checkpoint") + self.files("out", "partial"), [])
+
+    def test_minutes(self):
+        self.run_case("out", "checkpoint.minutes=1e-9", "time.end=0.01", "output.average_start=0")
+        last = len(self.history("out"))
+        self.assertEqual([self.step_of(path) for path in self.files("out", "checkpoint")], [last - 1, last])
+
+
+class Signals(Reliability):
+    def start(self, *settings, ranks=2):
+        """A run that would take long; returns when it has made some steps."""
+        words = [word for setting in ("output.directory=out", "time.end=1000", "output.interval=0.03",
+                                      "output.average_start=0.05", *settings) for word in ("--set", setting)]
+        run = subprocess.Popen(command(QUICK, *words, ranks=ranks), cwd=self.directory, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True, start_new_session=True)
+        self.addCleanup(self.kill, run)
+        deadline = time.time() + 60
+        path = self.directory / "out/jet60-quick_history.csv"
+        while time.time() < deadline and run.poll() is None and not (path.exists() and len(self.history("out")) > 60):
+            time.sleep(0.01)
+        return run
+
+    def kill(self, run):
+        if run.poll() is None:
+            os.killpg(run.pid, signal.SIGKILL)
+        run.communicate()
+
+    def ranks_of(self, run):
+        found = subprocess.run(["pgrep", "-P", str(run.pid), "impinge"], capture_output=True, text=True, check=True)
+        return [int(word) for word in found.stdout.split()]
+
+    def expect_a_stop(self, run, name):
+        out, err = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, STOPPED, out + err)
+        self.assertIn(f"{name}: stopped after step ", out)
+        self.assertIn("to go on: impinge --restart out", out)
+        (checkpoint,) = self.files("out", "checkpoint")
+        self.assertEqual(self.step_of(checkpoint), len(self.history("out")))
+        return self.step_of(checkpoint)
+
+    def test_stop_with_a_checkpoint_from_which_the_run_goes_on_bitwise(self):
+        for name, to_one_rank in (("SIGUSR1", False), ("SIGTERM", True), ("SIGINT", True)):
+            shutil.rmtree(self.directory / "out", ignore_errors=True)
+            run = self.start()
+            if to_one_rank:
+                os.kill(self.ranks_of(run)[-1], getattr(signal, name))
+            else:
+                os.kill(run.pid, getattr(signal, name))  # mpirun passes SIGUSR1 on
+            step = self.expect_a_stop(run, name)
+            last = float(self.history("out")[-1]["t"])
+            end = last + 0.02
+            self.impinge("--restart", "out", "--set", f"time.end={end}")
+            self.assertGreater(len(self.history("out")), step)
+            self.run_case("whole", f"time.end={end}", "checkpoint.minutes=0")
+            self.expect_the_same_run("out", "whole")
+
+
+
+if __name__ == "__main__":
+    if os.geteuid() == 0:
+        os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    unittest.main(verbosity=2)
