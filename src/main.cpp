@@ -13,6 +13,7 @@
 #include "impinge/petsc.hpp"
 #include "impinge/run.hpp"
 #include "impinge/simulation.hpp"
+#include "impinge/snapshot.hpp"
 
 namespace {
 
@@ -63,6 +64,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  impinge::leave_files_to_their_owners();
   MPI_Init(&argc, &argv);
   const int code = run_program(argc, argv);
   MPI_Finalize();

@@ -71,7 +71,6 @@ hid_t native_type() {
 class QuietErrors {
  public:
   QuietErrors() {
-    H5dont_atexit();  // every file is closed here; what HDF5 itself keeps of a damaged one it cannot close at the exit
     H5open();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -129,7 +128,15 @@ void throw_together(MPI_Comm comm, const std::string& own_message) {
   throw OutputError(broadcast(comm, own_message, first));
 }
 
-/// A file that all ranks write. A failed call is kept until finish: a rank that left early would hang the others.
+/// The file that is being written on several ranks, for the wrappers of MPI-IO at the end of this file.
+struct {
+  MPI_Comm comm = MPI_COMM_NULL;
+  std::string path;
+} shared_file;
+
+/// A file that all ranks write. Where it cannot be created all ranks throw OutputError. Later, a write may fail on one
+/// rank while the others wait for it inside HDF5: among several ranks, that ends the job at once. A rank by itself keeps
+/// the failure until finish.
 class Writer {
  public:
   /// `checked`: HDF5's own structures and every dataset carry checksums.
@@ -139,6 +146,8 @@ class Writer {
     keep(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL));
     if (checked) keep(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST));
     file_ = File(keep(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)));
+    throw_together(comm, message());
+    if (ranks_of(comm) > 1) shared_file = {comm, path_};
     transfer_ = Properties(H5Pcreate(H5P_DATASET_XFER));
     keep(H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE));
   }
@@ -203,6 +212,7 @@ class Writer {
   void finish() {
     keep(H5Fflush(file_, H5F_SCOPE_GLOBAL));  // what other nodes hold
     keep(H5Fclose(file_.release()));
+    shared_file.comm = MPI_COMM_NULL;
     if (rank_of(comm_) == 0 && failure_.empty()) failure_ = synchronise(partial_);
     const bool failed = any_rank(comm_, !failure_.empty());
     if (rank_of(comm_) == 0) {
@@ -214,14 +224,23 @@ class Writer {
         failure_ = error ? error.message() : synchronise(fs::path(path_).parent_path().string());
       }
     }
-    throw_together(comm_, failure_.empty() ? "" : fmt::format("cannot write {}: {}", path_, failure_));
+    throw_together(comm_, message());
   }
 
  private:
   template <class Code>
   Code keep(Code code) {
-    if (code < 0 && failure_.empty()) failure_ = hdf5_reason();
+    if (code < 0 && failure_.empty()) {
+      const int reason = errno;  // of the system call inside
+      failure_ = hdf5_reason();
+      if (reason != 0 && failure_.find("MPI error") == failure_.npos) failure_ += fmt::format(" ({})", std::strerror(reason));
+    }
+    errno = 0;
     return code;
+  }
+
+  std::string message() const {
+    return failure_.empty() ? "" : fmt::format("cannot write {}: {}", path_, failure_);
   }
 
   QuietErrors quiet_;
@@ -550,6 +569,12 @@ Particles<Dim> read_particles(const Reader& file, std::int64_t count, Read&& rea
 
 }  // namespace
 
+// HDF5 closes its files in MPI_Finalize where it found MPI initialised.
+void leave_files_to_their_owners() {
+  H5dont_atexit();
+  H5open();
+}
+
 std::string snapshot_path(const std::string& directory, const std::string& name, std::int64_t step) {
   return (fs::path(directory) / fmt::format("{}_{:08}{}", name, step, snapshot_ending)).string();
 }
@@ -706,4 +731,58 @@ template void write_checkpoint(MPI_Comm, const std::string&, const Checkpoint<3>
 template Checkpoint<2> read_checkpoint(MPI_Comm, const std::string&);
 template Checkpoint<3> read_checkpoint(MPI_Comm, const std::string&);
 
+namespace {
+
+/// Ends the job where a call that writes the shared file failed on this rank.
+int end_job_unless(bool done, int code) {
+  if (done || shared_file.comm == MPI_COMM_NULL) return code;
+  const int reason = errno;
+  fmt::print(stderr, "impinge: rank {}: cannot write {}: {}\n", rank_of(shared_file.comm), shared_file.path,
+             reason != 0 ? std::strerror(reason) : "MPI-IO failed");
+  std::fflush(nullptr);
+  MPI_Abort(shared_file.comm, 1);
+  return code;
+}
+
+/// Whether a write has written all of it.
+bool is_whole(int code, MPI_Status* status, int count, MPI_Datatype type) {
+  int size = 0;
+  MPI_Count written = 0;
+  PMPI_Type_size(type, &size);
+  if (code == MPI_SUCCESS) PMPI_Get_elements_x(status, MPI_BYTE, &written);
+  return code == MPI_SUCCESS && written == static_cast<MPI_Count>(count) * size;
+}
+
+}  // namespace
 }  // namespace impinge
+
+// HDF5 calls these by MPI's profiling interface.
+extern "C" {
+
+int MPI_File_write_at(MPI_File file, MPI_Offset offset, const void* data, int count, MPI_Datatype type,
+                      MPI_Status* status) {
+  errno = 0;
+  const int code = PMPI_File_write_at(file, offset, data, count, type, status);
+  return impinge::end_job_unless(impinge::is_whole(code, status, count, type), code);
+}
+
+int MPI_File_write_at_all(MPI_File file, MPI_Offset offset, const void* data, int count, MPI_Datatype type,
+                          MPI_Status* status) {
+  errno = 0;
+  const int code = PMPI_File_write_at_all(file, offset, data, count, type, status);
+  return impinge::end_job_unless(impinge::is_whole(code, status, count, type), code);
+}
+
+int MPI_File_set_size(MPI_File file, MPI_Offset size) {
+  errno = 0;
+  const int code = PMPI_File_set_size(file, size);
+  return impinge::end_job_unless(code == MPI_SUCCESS, code);
+}
+
+int MPI_File_sync(MPI_File file) {
+  errno = 0;
+  const int code = PMPI_File_sync(file);
+  return impinge::end_job_unless(code == MPI_SUCCESS, code);
+}
+
+}  // extern "C"

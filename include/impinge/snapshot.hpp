@@ -27,6 +27,10 @@ struct SnapshotHeader {
   std::string code_version;   ///< set by the reader; the writer puts in its own
 };
 
+/// Keeps HDF5 from trying again in MPI_Finalize and at the exit to close what it could not write: it crashes there. To
+/// be called before MPI_Init.
+void leave_files_to_their_owners();
+
 /// `<directory>/<name>_<step, 8 digits>.vtkhdf`.
 std::string snapshot_path(const std::string& directory, const std::string& name, std::int64_t step);
 

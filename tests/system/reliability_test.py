@@ -2,6 +2,7 @@
 """A run is never lost: restarts, signals, faults. Usage: reliability_test.py BIN_DIRECTORY [unittest options]"""
 
 import csv
+import errno
 import os
 import pathlib
 import shutil
@@ -18,6 +19,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+SHIM = BIN.parent / "tests/libfault_shim.so"
 QUICK = ROOT / "input/jet60-quick.toml"
 STOPPED = 4
 FIELDS = ("Points", "PointData/id", "PointData/velocity", "PointData/pressure", "PointData/pressure_impulse")
@@ -47,7 +49,8 @@ class Reliability(unittest.TestCase):
         return self.impinge(QUICK, *words, **options)
 
     def history(self, out):
-        with open(self.directory / out / "jet60-quick_history.csv", encoding="utf-8") as file:
+        (path,) = (self.directory / out).glob("*_history.csv")
+        with open(path, encoding="utf-8") as file:
             return [{key: value for key, value in row.items() if key != "seconds"} for row in csv.DictReader(file)]
 
     def files(self, out, ending):
@@ -65,7 +68,7 @@ class Reliability(unittest.TestCase):
             with h5py.File(path) as a, h5py.File(self.directory / out / path.name) as b:
                 for name in FIELDS:
                     np.testing.assert_array_equal(a["VTKHDF"][name][:], b["VTKHDF"][name][:], f"{path.name} {name}")
-        series = [(self.directory / name / "jet60-quick.xmf").read_text() for name in (out, expected)]
+        series = [path.read_text() for name in (out, expected) for path in self.files(name, "xmf")]
         self.assertEqual(*series)
         times = [float(time.get("Value")) for time in xml.etree.ElementTree.fromstring(series[0]).iter("Time")]
         self.assertEqual(times, sorted(set(times)))
@@ -208,6 +211,144 @@ class Signals(Reliability):
             self.run_case("whole", f"time.end={end}", "checkpoint.minutes=0")
             self.expect_the_same_run("out", "whole")
 
+
+    def test_kill_9_of_one_rank_ends_all_and_loses_nothing(self):
+        run = self.start("checkpoint.steps=1")
+        os.kill(self.ranks_of(run)[-1], signal.SIGKILL)
+        run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 128 + signal.SIGKILL)
+        newest = self.step_of(self.files("out", "checkpoint")[-1])
+        self.assertGreaterEqual(newest, len(self.history("out")) - 1)
+        done = self.impinge("--restart", "out", "--set", "time.end=1e-3")
+        self.assertIn(f"from step {newest},", done.stdout)
+
+    def test_a_removed_directory_is_told(self):
+        run = self.start("checkpoint.steps=5")
+        shutil.rmtree(self.directory / "out", ignore_errors=True)
+        _, err = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 1, err)
+        self.assertRegex(err, r"impinge: cannot write out/\S+: .*[nN]o such file or directory")
+
+
+class Faults(Reliability):
+    """The third step of a run, broken off between any two system calls that write its files."""
+
+    WORDS = [word for setting in ("tank.size=[0.06,0.06]", "tank.fluid_height=0.04", "output.interval=1e-3",
+                                  "checkpoint.steps=1", "output.average_start=0") for word in ("--set", setting)]
+    CASE = ROOT / "input/hydrostatic.toml"
+    END = ("--set", "time.end=3e-3")
+    ERRORS = {errno.ENOSPC: "No space left on device", errno.EIO: "Input/output error",
+              errno.EROFS: "Read-only file system"}
+
+    def setUp(self):
+        super().setUp()
+        self.impinge(self.CASE, *self.WORDS, "--set", "output.directory=whole", *self.END, ranks=0)
+        self.impinge(self.CASE, *self.WORDS, "--set", "output.directory=before", "--set", "time.end=2e-3", ranks=0)
+
+    def third_step(self, call, error=0, rank=0, ranks=0):
+        shutil.rmtree(self.directory / "out", ignore_errors=True)
+        shutil.copytree(self.directory / "before", self.directory / "out")
+        shim = {"LD_PRELOAD": str(SHIM), "FAULT_DIRECTORY": str(self.directory / "out"), "FAULT_AT": str(call),
+                "FAULT_ERROR": str(error), "FAULT_RANK": str(rank)}
+        if not ranks:
+            return self.impinge("--restart", "out", *self.END, ranks=0, code=None, environment=shim)
+        words = command("--restart", "out", *self.END, ranks=ranks)
+        words[1:1] = [word for name, value in shim.items() for word in ("-x", f"{name}={value}")]
+        return subprocess.run(words, cwd=self.directory, capture_output=True, text=True, timeout=30, check=False)
+
+    def expect_that_it_goes_on(self, ranks=0):
+        checkpoints = self.files("out", "checkpoint")
+        self.assertGreaterEqual(len(checkpoints), 2)
+        done = self.impinge("--restart", "out", *self.END, ranks=ranks)
+        self.assertNotIn("cannot read", done.stderr)
+        self.assertEqual(self.files("out", "partial"), [])
+        if not ranks:
+            self.expect_the_same_run("out", "whole")
+
+    def test_kills_at_many_calls(self):
+        stride = int(os.environ.get("FAULT_STRIDE", "4"))
+        points = 0
+        for call in range(1, 1000, stride):
+            done = self.third_step(call)
+            if done.returncode == 0:
+                break
+            self.assertEqual(done.returncode, -signal.SIGKILL, done.stderr)
+            points += 1
+            self.expect_that_it_goes_on()
+        print(f"{points} kill points survived", end=" ", flush=True)
+        self.assertGreaterEqual(points, 200 // stride)
+
+    def test_kills_of_one_rank_of_two(self):
+        for rank, calls in ((0, (20, 70, 130)), (1, (5, 45))):
+            for call in calls:
+                done = self.third_step(call, rank=rank, ranks=2)
+                self.assertEqual(done.returncode, 128 + signal.SIGKILL, done.stdout + done.stderr)
+                self.expect_that_it_goes_on(ranks=2)
+
+    def test_errors_are_told_and_the_run_goes_on_when_they_are_gone(self):
+        for k, call in enumerate(range(3, 1000, 13)):
+            error, reason = list(self.ERRORS.items())[k % len(self.ERRORS)]
+            done = self.third_step(call, error)
+            if done.returncode == 0:
+                break
+            self.assertIn(done.returncode, (1, 2), done.stderr)
+            self.assertRegex(done.stderr, "impinge: .*out")
+            self.assertRegex(done.stderr.lower(), f"impinge: .*({reason.lower()}|mpi_err)")
+            self.expect_that_it_goes_on()
+        self.assertGreater(k, 10)
+
+    def test_errors_of_one_rank_of_two_end_both(self):
+        for rank, calls in ((0, (31, 61, 136)), (1, (17, 49, 73))):
+            for call in calls:
+                done = self.third_step(call, errno.ENOSPC, rank=rank, ranks=2)
+                self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+                self.assertRegex(done.stderr.lower(), "cannot write out/hydrostatic_00000003.*no space left on device")
+                self.expect_that_it_goes_on(ranks=2)
+
+    def test_a_full_and_a_read_only_disk(self):
+        disk = self.directory / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", str(disk)], capture_output=True,
+                                 check=False)
+        if mounted.returncode:
+            self.skipTest("mounting a small disk is not allowed here")
+        self.addCleanup(subprocess.run, ["umount", "-l", str(disk)], check=False)
+        done = self.impinge(self.CASE, *self.WORDS, "--set", "output.directory=disk", "--set", "time.end=1", code=1)
+        self.assertRegex(done.stderr.lower(), "cannot write disk/.*no space")
+        newest = self.step_of(self.files("disk", "checkpoint")[-1])
+        self.assertGreater(newest, 2)
+        end = ("--set", f"time.end={(newest + 2) * 1e-3}")
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        done = self.impinge("--restart", "disk", *end, code=2)
+        self.assertIn("cannot write there: Read-only file system", done.stderr)
+        subprocess.run(["mount", "-o", "remount,rw,size=2m", str(disk)], check=True)
+        self.assertIn(f"from step {newest},", self.impinge("--restart", "disk", *end).stdout)
+        self.assertEqual([int(row["step"]) for row in self.history("disk")], list(range(1, newest + 3)))
+
+
+class Memory(Reliability):
+    def test_does_not_grow_over_2000_steps(self):
+        words = command(ROOT / "input/hydrostatic.toml", "--set", "output.directory=out", "--set", "time.end=2.6",
+                        "--set", "checkpoint.steps=50", "--set", "output.interval=0.05", "-ppe_ksp_max_it", "1000",
+                        ranks=0)
+        with subprocess.Popen(words, cwd=self.directory, stdout=subprocess.DEVNULL) as run:
+            self.addCleanup(run.kill)
+            resident = {}
+            path = self.directory / "out/hydrostatic_history.csv"
+            while run.poll() is None:
+                time.sleep(0.02)
+                if path.exists():
+                    step = path.read_bytes().count(b"\n") - 1
+                    for line in pathlib.Path(f"/proc/{run.pid}/status").read_text().splitlines():
+                        if line.startswith("VmRSS"):
+                            resident[step] = int(line.split()[1])
+        self.assertEqual(run.returncode, 0)
+        first = max(size for step, size in resident.items() if 400 <= step <= 600)
+        last = max(size for step, size in resident.items() if 2400 <= step <= 2600)
+        particles = int(self.history("out")[-1]["particles"])
+        growth = 1024 * (last - first) / particles
+        print(f"{growth:.0f} bytes per particle over 2000 steps, of {1024 * last / particles:.0f}", end=" ", flush=True)
+        self.assertLess(growth, 500)
 
 
 if __name__ == "__main__":
