@@ -135,8 +135,8 @@ struct {
 } shared_file;
 
 /// A file that all ranks write. Where it cannot be created all ranks throw OutputError. Later, a write may fail on one
-/// rank while the others wait for it inside HDF5: among several ranks, that ends the job at once. A rank by itself keeps
-/// the failure until finish.
+/// rank while the others wait for it inside HDF5: among several ranks, that ends the job at once. A rank by itself
+/// keeps the failure until finish.
 class Writer {
  public:
   /// `checked`: HDF5's own structures and every dataset carry checksums.
@@ -233,15 +233,14 @@ class Writer {
     if (code < 0 && failure_.empty()) {
       const int reason = errno;  // of the system call inside
       failure_ = hdf5_reason();
-      if (reason != 0 && failure_.find("MPI error") == failure_.npos) failure_ += fmt::format(" ({})", std::strerror(reason));
+      if (reason != 0 && failure_.find("MPI error") == failure_.npos)
+        failure_ += fmt::format(" ({})", std::strerror(reason));
     }
     errno = 0;
     return code;
   }
 
-  std::string message() const {
-    return failure_.empty() ? "" : fmt::format("cannot write {}: {}", path_, failure_);
-  }
+  std::string message() const { return failure_.empty() ? "" : fmt::format("cannot write {}: {}", path_, failure_); }
 
   QuietErrors quiet_;
   MPI_Comm comm_;
