@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* description =
     "Impinge computes free-surface flow by the MPS particle method on any number of MPI ranks.\n"
-    "  mpirun -n 2 impinge CASE.toml [--set key=value ...] [-petsc_option [value] ...]";
+    "  mpirun -n 2 impinge CASE.toml [--set key=value ...] [-petsc_option [value] ...]\n"
+    "  mpirun -n 2 impinge --restart DIR [--set key=value ...] [-petsc_option [value] ...]";
 
 constexpr const char* footer = R"(
 PETSc options have a single dash; the pressure solver's start with -ppe_. An option that nobody uses is an error.
@@ -23,7 +24,10 @@ PETSc options have a single dash; the pressure solver's start with -ppe_. An opt
   -ppe_ksp_monitor                    residual of every iteration
   -log_view                           time of every phase of the step
 
-Exit codes: 0 done, 1 environment or bug, 2 wrong input, 3 failed solve or diverged flow)";
+SIGTERM, SIGINT or SIGUSR1 ends a run after its step, with a checkpoint; a second SIGINT ends it at once.
+
+Exit codes: 0 done, 1 environment or bug, 2 wrong input, 3 failed solve or diverged flow, 4 ended by a signal with a
+checkpoint: --restart goes on)";
 
 bool is_petsc_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) && word != "-h";
@@ -63,10 +67,15 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
       ->option_text("RANKS")
       ->check(CLI::Range(1, 1000000).description(""))
       ->excludes("--check");
+  app.add_option("--restart", line.restart_directory,
+                 "Go on with the run in DIR from its last checkpoint, with --set over its case")
+      ->option_text("DIR")
+      ->excludes("--check")
+      ->excludes("--plan");
   app.add_option("--set", line.settings, "Set a key of the case, over its files; may be repeated")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  app.add_option("case", line.case_path, "The case file")->option_text("CASE.toml");
+  app.add_option("case", line.case_path, "The case file")->option_text("CASE.toml")->excludes("--restart");
 
   const auto fail = [](const std::string& what) {
     throw InputError({fmt::format("command line: {}; see impinge --help", what)});
@@ -82,7 +91,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     fail(error.what());
   }
-  if (line.text.empty() && line.case_path.empty()) {
+  if (line.text.empty() && line.case_path.empty() && line.restart_directory.empty()) {
     fail(line.petsc_arguments.empty() || is_petsc_option(line.petsc_arguments.back())
              ? "the case file is missing"
              : fmt::format("the case file is missing ({} is taken for the value of a PETSc option)",

@@ -29,6 +29,7 @@
 
 #include "impinge/analytic_jet.hpp"
 #include "impinge/lattice.hpp"
+#include "impinge/output_error.hpp"
 
 namespace impinge {
 namespace {
@@ -212,6 +213,11 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(output.average_start), every, "s", not_negative, "0.8 x time.end",
        "start of the time average of the wall pressure"},
 
+      {IMPINGE_KEY(checkpoint.steps), every, "", from_to(0, 1e9), "",
+       "steps from one checkpoint to the next; 0: none by steps. With either key, a run also ends with one"},
+      {IMPINGE_KEY(checkpoint.minutes), every, "min", not_negative, "",
+       "wall-clock time from one checkpoint to the next; 0: none by time"},
+
       {IMPINGE_KEY(parallel.partitioner), every, "", {}, "", "library that distributes the cells over the ranks"},
       {IMPINGE_KEY(parallel.imbalance), every, "", from_to(1, 100), "",
        "largest over mean number of particles of a rank that calls for a new partition"},
@@ -232,6 +238,13 @@ std::string_view table_of(std::string_view key) {
 
 bool is_table(std::string_view name) {
   return std::ranges::any_of(keys(), [&](const Key& key) { return table_of(key.name) == name && !name.empty(); });
+}
+
+/// What a restarted run cannot change: its scene, and whatever its particles were made by.
+bool is_fixed(const Key& key) {
+  static const std::set<std::string_view> fixed{
+      "name", "geometry", "dimension", "scheme", "fluid.density", "particles", "kernel", "walls", "output.directory"};
+  return key.geometry || fixed.contains(key.name) || fixed.contains(table_of(key.name));
 }
 
 std::string_view word(GeometryType geometry) { return words(geometry)[static_cast<std::size_t>(geometry)]; }
@@ -918,6 +931,27 @@ Config parse_case(const std::vector<NamedText>& files, const std::vector<std::st
   reader.assign();
   reader.complete();
   return reader.finish();
+}
+
+Config parse_restart(const NamedText& stored, const std::vector<std::string>& settings, const std::string& directory) {
+  Config before;
+  try {
+    before = parse_case({stored});
+  } catch (const InputError& error) {
+    throw OutputError(fmt::format("cannot read {}: its case is not valid: {}", stored.first, error.what()));
+  }
+  Config after = parse_case({stored}, settings);
+  std::vector<std::string> mistakes;
+  for (const Key& key : keys())
+    if (is_fixed(key) && value_text(key, after) != value_text(key, before))
+      mistakes.push_back(fmt::format("--set: {} = {}: a restart cannot change this key; allowed: {}", key.name,
+                                     value_text(key, after), value_text(key, before)));
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+  std::vector<std::string> all = settings;
+  all.push_back("output.directory=" + in_quotes(directory));
+  Config config = parse_case({stored}, all);
+  config.output.directory_place = "--restart";
+  return config;
 }
 
 std::string describe_keys() {

@@ -110,6 +110,14 @@ void Domain<Dim>::partition(const Particles<Dim>& particles) {
 }
 
 template <int Dim>
+void Domain<Dim>::set_owners(std::vector<int> owner, double achieved_imbalance) {
+  owner_ = std::move(owner);
+  achieved_imbalance_ = achieved_imbalance;
+  ++partitions_;
+  find_halo_targets();
+}
+
+template <int Dim>
 void Domain<Dim>::find_halo_targets() {
   const int self = rank_of(comm_);
   targets_.clear();

@@ -37,8 +37,8 @@ JetGeometry::JetGeometry(const Config& config)
   column_end_ = static_cast<double>(column_rows_) * dp;
   steady_rows_ = start_ == JetStart::steady ? static_cast<std::int64_t>(std::ceil(at(column_end_, width)[1] / dp)) : 0;
 
-  last_row_ = -(buffer_rows_ - 0.5) * dp;
-  next_id_ =
+  inlet_.last_row = -(buffer_rows_ - 0.5) * dp;
+  inlet_.next_id =
       wall_columns_ * layers_ + (buffer_rows_ + column_rows_) * particles_per_row_ + steady_rows_ * wall_columns_;
 
   // Everything the plate, the ghosts and the buffer occupy, and room above for splash.
@@ -123,14 +123,15 @@ BoundaryFlow JetGeometry::move_boundaries(double dt, Particles<2>& particles,
   particles.resize(kept);
 
   // A new row each time the buffer has moved by a spacing.
-  last_row_ += speed_ * dt;
-  while (last_row_ - spacing_ >= -buffer_rows_ * spacing_) {
-    last_row_ -= spacing_;
+  inlet_.last_row += speed_ * dt;
+  while (inlet_.last_row - spacing_ >= -buffer_rows_ * spacing_) {
+    inlet_.last_row -= spacing_;
     for (int k = 0; k < particles_per_row_; ++k) {
-      const Vec<2> position = at(last_row_, (k + 0.5) * spacing_);
-      if (owns(position)) particles.append({position, inlet_velocity(), 0.0, 0.0, next_id_ + k, ParticleType::inlet});
+      const Vec<2> position = at(inlet_.last_row, (k + 0.5) * spacing_);
+      if (owns(position))
+        particles.append({position, inlet_velocity(), 0.0, 0.0, inlet_.next_id + k, ParticleType::inlet});
     }
-    next_id_ += particles_per_row_;
+    inlet_.next_id += particles_per_row_;
   }
   return flow;
 }

@@ -13,10 +13,11 @@
 #include "impinge/petsc.hpp"
 #include "impinge/run.hpp"
 #include "impinge/simulation.hpp"
+#include "impinge/snapshot.hpp"
 
 namespace {
 
-enum ExitCode { done = 0, broken = 1, wrong_input = 2, failed_solve = 3 };
+enum ExitCode { done = 0, broken = 1, wrong_input = 2, failed_solve = 3, stopped = 4 };
 
 /// What main does between MPI_Init and MPI_Finalize. Errors that all ranks share are told by rank 0; an error of one
 /// rank ends the job at once, for the others may be waiting for it.
@@ -31,13 +32,15 @@ int run_program(int argc, char** argv) {
       return done;
     }
     const PetscSession session(argv[0], line.petsc_arguments);
+    if (!line.restart_directory.empty())
+      return restart_case(comm, line.restart_directory, line.settings) ? done : stopped;
     const Config config = parse_case(load_case_files_on_first_rank(comm, line.case_path), line.settings);
     if (line.check) {
       check_case(comm, config);
     } else if (line.plan_ranks > 0) {
       plan_case(comm, config, line.plan_ranks);
     } else {
-      run_case(comm, config);
+      return run_case(comm, config) ? done : stopped;
     }
     return done;
   } catch (const InputError& error) {
@@ -61,6 +64,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  impinge::leave_files_to_their_owners();
   MPI_Init(&argc, &argv);
   const int code = run_program(argc, argv);
   MPI_Finalize();

@@ -7,6 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <memory>
+#include <set>
 #include <sstream>
 
 #include "impinge/output.hpp"
@@ -14,6 +17,8 @@
 #include "impinge/plan.hpp"
 #include "impinge/progress.hpp"
 #include "impinge/simulation.hpp"
+#include "impinge/snapshot.hpp"
+#include "impinge/stop_signals.hpp"
 
 namespace impinge {
 namespace {
@@ -24,12 +29,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 /// Runs use(std::integral_constant<int, Dim>) for the case's dimension.
 template <class Use>
-void with_dimension(const Config& config, Use&& use) {
-  if (config.dimension == 3) {
-    use(std::integral_constant<int, 3>{});
-  } else {
-    use(std::integral_constant<int, 2>{});
-  }
+auto with_dimension(const Config& config, Use&& use) {
+  if (config.dimension == 3) return use(std::integral_constant<int, 3>{});
+  return use(std::integral_constant<int, 2>{});
 }
 
 /// Throws InputError on all ranks if the command line has PETSc options that no rank has asked for (a solver may live
@@ -132,24 +134,48 @@ double next_output(double time, double interval) {
   return interval > 0.0 ? (std::floor(time / interval + 1e-9) + 1.0) * interval : HUGE_VAL;
 }
 
+/// Says after each step whether a checkpoint is due or a signal asks for the end.
+class Interruptions {
+ public:
+  enum Kind { none, checkpoint, stop };
+
+  Interruptions(MPI_Comm comm, const Config& config) : comm_(comm), config_(config.checkpoint) {}
+
+  /// The same on every rank, whichever rank's clock or signal it was. Collective.
+  Kind after_step(std::int64_t step) {
+    Kind kind = none;
+    if (config_.steps > 0 && step % config_.steps == 0) kind = checkpoint;
+    if (config_.minutes > 0.0 && seconds_since(last_) >= 60.0 * config_.minutes) kind = checkpoint;
+    if (StopSignals::received() != 0) kind = stop;
+    kind = static_cast<Kind>(max_over_ranks(comm_, kind));
+    if (kind != none) last_ = Clock::now();
+    return kind;
+  }
+
+  /// The signal that a rank received. Collective.
+  int signal() const { return static_cast<int>(max_over_ranks(comm_, StopSignals::received())); }
+
+ private:
+  StopSignals signals_;
+  MPI_Comm comm_;
+  decltype(Config::checkpoint) config_;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Runs from where the simulation is to the case's end. Returns false where a signal ended the run before. Collective.
 template <int Dim>
-void run(MPI_Comm comm, const Config& config) {
+bool run(MPI_Comm comm, const Config& config, Simulation<Dim>& simulation, Output& output) {
   const bool first = rank_of(comm) == 0;
   const auto start = Clock::now();
-  Output output(comm, config);
-  if (first && output.removed() > 0)
-    fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
-  Simulation<Dim> simulation(comm, config);
   const StepReport& report = simulation.report();
-  if (first)
-    fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
-               config.name, config.time.end, report.particles, ranks_of(comm), config.output.directory);
-  output.save(simulation, "running");
+  const std::int64_t first_step = report.step;
 
   // Steps that end within this of an instant have reached it.
   const double tolerance = 1e-9 * config.time.end;
   const auto finished = [&] { return report.time >= config.time.end - tolerance; };
-  double output_time = next_output(report.time, config.output.interval);
+  double output_time = next_output(report.time + tolerance, config.output.interval);
+  const bool has_checkpoints = config.checkpoint.steps > 0 || config.checkpoint.minutes > 0.0;
+  Interruptions interruptions(comm, config);
   bool options_checked = false;
   Progress progress(report.time, config.time.end, first);
   while (!finished()) {
@@ -172,12 +198,94 @@ void run(MPI_Comm comm, const Config& config) {
       output.save(simulation, "finished");
     } else if (report.time >= output_time - tolerance) {
       output.save(simulation, "running");
-      output_time = next_output(report.time, config.output.interval);
+      output_time = next_output(report.time + tolerance, config.output.interval);
+    }
+    const Interruptions::Kind interruption = interruptions.after_step(report.step);
+    if (finished() ? has_checkpoints : interruption != Interruptions::none) {
+      const std::string path = output.save_checkpoint(simulation);
+      if (interruption == Interruptions::stop && !finished()) {
+        const char* signal = signal_name(interruptions.signal());
+        if (first)
+          fmt::print("{}: stopped after step {}, t = {:.6g} s, with the state in {}\nto go on: impinge --restart {}\n",
+                     signal, report.step, report.time, path, config.output.directory);
+        return false;
+      }
     }
   }
   if (first)
-    fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step,
+    fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step - first_step,
                duration_text(seconds_since(start)), report.in - report.out - report.fluid);
+  return true;
+}
+
+template <int Dim>
+bool start_run(MPI_Comm comm, const Config& config) {
+  const bool first = rank_of(comm) == 0;
+  Output output(comm, config);
+  if (first && output.removed() > 0)
+    fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
+  Simulation<Dim> simulation(comm, config);
+  if (first)
+    fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
+               config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
+  output.save(simulation, "running");
+  return run(comm, config, simulation, output);
+}
+
+template <int Dim>
+std::shared_ptr<Simulation<Dim>> restored(MPI_Comm comm, const Config& config, const std::string& path) {
+  const Checkpoint<Dim> checkpoint = read_checkpoint<Dim>(comm, path);
+  return std::make_shared<Simulation<Dim>>(comm, config, &checkpoint);
+}
+
+template <int Dim>
+bool go_on(MPI_Comm comm, const Config& config, Simulation<Dim>& simulation) {
+  const StepReport& report = simulation.report();
+  Output output(comm, config, report.step);
+  if (rank_of(comm) == 0)
+    fmt::print("impinge {}: {} from step {}, t = {:.6g} s, to t = {} s with {} particles on {} rank(s), output in {}\n",
+               IMPINGE_VERSION, config.name, report.step, report.time, config.time.end, report.particles,
+               ranks_of(comm), config.output.directory);
+  return run(comm, config, simulation, output);
+}
+
+/// The checkpoints in a directory, the last one first. Throws InputError where there are none or they are of several
+/// cases. Collective.
+std::vector<std::string> checkpoints_to_try(MPI_Comm comm, const std::string& directory) {
+  std::vector<std::string> paths;
+  std::string mistake;
+  if (rank_of(comm) == 0) {
+    try {
+      paths = list_checkpoints(directory);
+      std::set<std::string> names;
+      for (const std::string& path : paths) names.insert(name_and_step(path).first);
+      if (paths.empty()) mistake = "no checkpoint there";
+      if (names.size() > 1) mistake = fmt::format("checkpoints of several cases: {}", fmt::join(names, ", "));
+    } catch (const OutputError& error) {
+      mistake = error.what();
+    }
+  }
+  mistake = broadcast(comm, mistake, 0);
+  if (!mistake.empty()) throw InputError({fmt::format("--restart {}: {}", directory, mistake)});
+  std::istringstream list(broadcast(comm, fmt::format("{}", fmt::join(paths, "\n")), 0));
+  paths.clear();
+  for (std::string path; std::getline(list, path);) paths.insert(paths.begin(), path);
+  return paths;
+}
+
+/// The case text of a checkpoint. Throws OutputError on all ranks. Collective.
+NamedText case_of_checkpoint(MPI_Comm comm, const std::string& path) {
+  std::string text, failure;
+  if (rank_of(comm) == 0) {
+    try {
+      text = read_header(path).case_text;
+    } catch (const OutputError& error) {
+      failure = error.what();
+    }
+  }
+  failure = broadcast(comm, failure, 0);
+  if (!failure.empty()) throw OutputError(failure);
+  return {path, broadcast(comm, text, 0)};
 }
 
 }  // namespace
@@ -213,8 +321,28 @@ void plan_case(MPI_Comm comm, const Config& config, int ranks) {
   });
 }
 
-void run_case(MPI_Comm comm, const Config& config) {
-  with_dimension(config, [&](auto dimension) { run<dimension()>(comm, config); });
+bool run_case(MPI_Comm comm, const Config& config) {
+  return with_dimension(config, [&](auto dimension) { return start_run<dimension()>(comm, config); });
+}
+
+bool restart_case(MPI_Comm comm, const std::string& directory, const std::vector<std::string>& settings) {
+  for (const std::string& path : checkpoints_to_try(comm, directory)) {
+    std::function<bool()> continued_run;
+    try {
+      const Config config = parse_restart(case_of_checkpoint(comm, path), settings, directory);
+      if (const std::string name = name_and_step(path).first; name != config.name)
+        throw OutputError(fmt::format("cannot read {}: it is of the case {}", path, config.name));
+      with_dimension(config, [&](auto dimension) {
+        const auto simulation = restored<dimension()>(comm, config, path);
+        continued_run = [=] { return go_on(comm, config, *simulation); };
+      });
+    } catch (const OutputError& error) {
+      if (rank_of(comm) == 0) fmt::print(stderr, "impinge: {}\n", error.what());
+      continue;
+    }
+    return continued_run();
+  }
+  throw InputError({fmt::format("--restart {}: no checkpoint there can be read", directory)});
 }
 
 }  // namespace impinge

@@ -7,6 +7,7 @@
 
 #include "impinge/lattice.hpp"
 #include "impinge/operators.hpp"
+#include "impinge/output_error.hpp"
 
 namespace impinge {
 namespace {
@@ -37,17 +38,20 @@ constexpr double splash_density = 0.5;  // n/n0 below which a fluid particle is 
 constexpr double first_courant = 0.05;  // of the first step: an impact may be about to change the speeds
 constexpr double most_growth = 1.1;     // of dt from step to step
 constexpr double largest_shift = 0.1;   // of a step [dp]
+constexpr int most_halvings = 4;        // of dt, where the pressure cannot be solved
 
 bool is_mirrored(const Config& config) { return config.walls.model == WallModel::mirror; }
 bool has_columns(const Config& config) { return config.walls.model == WallModel::columns; }
 
 // Arrays of one entry per particle.
 template <int Dim>
-constexpr std::size_t particle_bytes = sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t) +
-                                       sizeof(PressureRole) + 2 * sizeof(double) + 4 * sizeof(Vec<Dim>) +
+constexpr std::size_t particle_bytes = 2 * (sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t)) +
+                                       sizeof(PressureRole) + 2 * sizeof(double) + 6 * sizeof(Vec<Dim>) +
                                        sizeof(Matrix<Dim>) + sizeof(PetscInt);
 
 bool moves(ParticleType type) { return type == ParticleType::fluid; }
+
+constexpr const char* pressure_phase = "pressure";
 
 }  // namespace
 
@@ -61,7 +65,7 @@ SolveError::SolveError(std::int64_t step, std::string phase, const std::string& 
       phase_(std::move(phase)) {}
 
 template <int Dim>
-Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
+Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config, const Checkpoint<Dim>* checkpoint)
     : comm_(comm),
       config_(config),
       near_sums_(lattice_sums<Dim>(config.kernel.type, config.kernel.radius)),
@@ -78,6 +82,10 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
       column_closure_(config.kernel.type, config.kernel.laplacian_radius, wall_layers) {
   if (pressure_solver_.is_two_level()) two_level_.emplace(comm, domain_.cells());
   for (int k = 0; k < Dim; ++k) gravity_[k] = config.fluid.gravity[static_cast<std::size_t>(k)];
+  if (checkpoint) {
+    restore(*checkpoint);
+    return;
+  }
   geometry_->fill(rank_of(comm), ranks_of(comm), particles_);
   domain_.partition(particles_);
   redistribute();
@@ -89,6 +97,22 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const Config& config)
 
 template <int Dim>
 void Simulation<Dim>::step() {
+  save(step_start_);
+  report_.cold_solves = 0;
+  report_.halvings = 0;
+  while (true) {
+    try {
+      return try_step();
+    } catch (const SolveError& error) {
+      if (error.phase() != pressure_phase || report_.halvings == most_halvings) throw;
+      restore(step_start_);
+      ++report_.halvings;
+    }
+  }
+}
+
+template <int Dim>
+void Simulation<Dim>::try_step() {
   ++report_.step;
   choose_time_step();
   accelerate();
@@ -105,6 +129,101 @@ void Simulation<Dim>::step() {
   take_stock();
 }
 
+// Calls use(name, number) for all that the next step, or a restarted run, reads of a step.
+template <int Dim>
+template <class Use>
+void Simulation<Dim>::for_numbers(StepReport& report, double& window_begin, double& window_end, InletState& inlet,
+                                  Use&& use) {
+  use("step", report.step);
+  use("time", report.time);
+  use("dt", report.dt);
+  use("limit", report.limit);
+  use("particles", report.particles);
+  use("fluid", report.fluid);
+  use("in", report.in);
+  use("out", report.out);
+  use("lost", report.lost);
+  use("kinetic_energy", report.kinetic_energy);
+  use("max_speed", report.max_speed);
+  use("max_pressure", report.max_pressure);
+  use("floor_force", report.floor_force);
+  use("iterations", report.pressure.iterations);
+  use("window_begin", window_begin);
+  use("window_end", window_end);
+  use("inlet_last_row", inlet.last_row);
+  use("inlet_next_id", inlet.next_id);
+}
+
+template <int Dim>
+void Simulation<Dim>::save(Checkpoint<Dim>& state) const {
+  state.particles = particles_;
+  state.particles.resize(particles_.owned);
+  state.searched_position = searched_position_;
+  StepReport report = report_;
+  double window_begin = window_begin_;
+  double window_end = window_end_;
+  InletState inlet = geometry_->inlet();
+  for_numbers(report, window_begin, window_end, inlet,
+              [&](const char* name, auto number) { state.numbers[name] = static_cast<double>(number); });
+}
+
+template <int Dim>
+Checkpoint<Dim> Simulation<Dim>::checkpoint() const {
+  Checkpoint<Dim> state;
+  save(state);
+  state.owner.assign(domain_.owners().begin(), domain_.owners().end());
+  state.numbers["achieved_imbalance"] = domain_.achieved_imbalance();
+  if (two_level_) {
+    state.coarse = two_level_->coarse_rows();
+    state.numbers["coarse_age"] = two_level_->age();
+    state.numbers["coarse_fresh_iterations"] = two_level_->fresh_iterations();
+  }
+  return state;
+}
+
+// The pairs that the next step starts with are those of the places where neighbours were searched last. Collective.
+template <int Dim>
+void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
+  const auto number = [&](const std::string& name) {
+    const auto found = state.numbers.find(name);
+    if (found == state.numbers.end()) throw OutputError(fmt::format("the checkpoint has no {}", name));
+    return found->second;
+  };
+  InletState inlet;
+  for_numbers(report_, window_begin_, window_end_, inlet,
+              [&]<class T>(const char* name, T& target) { target = static_cast<T>(number(name)); });
+  geometry_->set_inlet(inlet);
+
+  particles_ = state.particles;
+  particles_.position = state.searched_position;
+  if (!state.owner.empty()) {
+    if (state.owner.size() != static_cast<std::size_t>(domain_.cells().count()))
+      throw OutputError(fmt::format("the checkpoint has {} background cells, but the case has {}", state.owner.size(),
+                                    domain_.cells().count()));
+    domain_.set_owners(state.owner, number("achieved_imbalance"));
+  } else if (domain_.owners().empty()) {
+    domain_.partition(particles_);
+  }
+  // The positions at the end of the step go the particles' way in the place of velocities.
+  Particles<Dim> later = particles_;
+  later.velocity = state.particles.position;
+  domain_.migrate(later);
+  migrate();
+  find_neighbours();
+  measure_density();
+  std::copy_n(later.velocity.begin(), particles_.owned, particles_.position.begin());
+
+  if (!two_level_) return;
+  if (state.owner.empty() || number("coarse_age") == 0.0) {
+    two_level_->expire();
+  } else {
+    two_level_->set_owners(domain_.owners());
+    partitions_seen_ = domain_.partitions();
+    two_level_->set_coarse_rows(state.coarse, static_cast<int>(number("coarse_age")),
+                                static_cast<int>(number("coarse_fresh_iterations")));
+  }
+}
+
 template <int Dim>
 void Simulation<Dim>::forget_pressure() {
   std::fill(particles_.pressure.begin(), particles_.pressure.end(), 0.0);
@@ -116,6 +235,11 @@ void Simulation<Dim>::choose_time_step() {
   const double largest = config_.time.cfl * config_.particles.spacing / report_.max_speed;  // infinite at rest
   const double grown = report_.dt > 0.0 ? most_growth * report_.dt : first_courant / config_.time.cfl * largest;
   report_.dt = std::min({config_.time.dt, largest, grown});
+  if (report_.halvings > 0) {
+    report_.dt = std::ldexp(report_.dt, -report_.halvings);
+    report_.limit = StepLimit::retry;
+    return;
+  }
   report_.limit = report_.dt == config_.time.dt ? StepLimit::case_dt
                   : report_.dt == largest       ? StepLimit::cfl
                                                 : StepLimit::growth;
@@ -198,6 +322,12 @@ void Simulation<Dim>::redistribute() {
   // A partition that could not reach the threshold is not tried again before the balance has become worse.
   if (domain_.imbalance(particles_) > std::max(config_.parallel.imbalance, 1.1 * domain_.achieved_imbalance()))
     domain_.partition(particles_);
+  migrate();
+}
+
+// Particles to their ranks, and what depends on who has which.
+template <int Dim>
+void Simulation<Dim>::migrate() {
   const std::int64_t lost = sum_over_ranks(comm_, domain_.migrate(particles_));
   report_.lost += lost;
   if (lost > 0) fail("redistribute", fmt::format("{} particle(s) left the domain other than by an outlet", lost));
@@ -233,6 +363,7 @@ template <int Dim>
 void Simulation<Dim>::find_neighbours() {
   const LogStage log(stage(searching));
   search_.search(particles_, column_);
+  searched_position_.assign(particles_.position.begin(), particles_.position.begin() + particles_.owned);
 }
 
 template <int Dim>
@@ -338,6 +469,26 @@ void Simulation<Dim>::solve_pressure() {
     const LogStage log(stage(assembling));
     weigh_images();
     find_sources();
+  }
+  try_pressure();
+  if (!report_.pressure.failure.empty()) {
+    ++report_.cold_solves;
+    forget_pressure();
+    try_pressure();
+  }
+  if (!report_.pressure.failure.empty()) fail(pressure_phase, report_.pressure.failure);
+  if (config_.pressure.clamp_negative)
+    for (int i = 0; i < particles_.owned; ++i) {
+      double& pressure = particles_.pressure[static_cast<std::size_t>(i)];
+      pressure = std::max(pressure, 0.0);
+    }
+  share_wall_pressure();
+}
+
+template <int Dim>
+void Simulation<Dim>::try_pressure() {
+  {
+    const LogStage log(stage(assembling));
     if (config_.free_surface.zero_outside) surface_weight_.resize(static_cast<std::size_t>(particles_.owned));
     const auto for_rows = [&](const auto& use) {
       search_.for_far_rows([&](int i, const PairRow& row) {
@@ -366,13 +517,6 @@ void Simulation<Dim>::solve_pressure() {
   }
   const LogStage log(stage(solving));
   report_.pressure = pressure_solver_.solve(particles_.pressure);
-  if (!report_.pressure.failure.empty()) fail("pressure", report_.pressure.failure);
-  if (config_.pressure.clamp_negative)
-    for (int i = 0; i < particles_.owned; ++i) {
-      double& pressure = particles_.pressure[static_cast<std::size_t>(i)];
-      pressure = std::max(pressure, 0.0);
-    }
-  share_wall_pressure();
 }
 
 // Ghosts of a column take its pressure; the wall particles of a mirror measure the mean around them.
@@ -464,9 +608,9 @@ void Simulation<Dim>::take_stock() {
     sums[0] += 1.0;
     const double pressure = particles_.pressure[i];
     maxima[1] = std::max(maxima[1], pressure);
+    if (!std::isfinite(pressure) || !std::isfinite(norm(particles_.velocity[i]))) maxima[2] = 1.0;
     if (particles_.type[i] == ParticleType::fluid) {
       const double speed2 = dot(particles_.velocity[i], particles_.velocity[i]);
-      if (!std::isfinite(speed2)) maxima[2] = 1.0;
       sums[1] += 1.0;
       sums[2] += 0.5 * mass * speed2;
       maxima[0] = std::max(maxima[0], speed2);
@@ -487,7 +631,7 @@ void Simulation<Dim>::take_stock() {
     if (window_end_ == 0.0) window_begin_ = report_.time - report_.dt;
     window_end_ = report_.time;
   }
-  if (maxima[2] > 0.0) fail("correct", "a velocity is not a number");
+  if (maxima[2] > 0.0) fail("correct", "a velocity or a pressure is not a number");
   if (report_.max_speed > config_.time.max_speed)
     fail("correct", fmt::format("the largest speed, {:.4g} m/s, passed time.max_speed = {:.4g} m/s", report_.max_speed,
                                 config_.time.max_speed));

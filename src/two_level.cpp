@@ -109,6 +109,9 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
   check(PetscSFSetGraph(nodes_, static_cast<PetscInt>(owned_cells_), static_cast<PetscInt>(remote.size()), nullptr,
                         PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(nodes_));
+  node_of_root_.clear();
+  for (std::size_t cell = 0; cell < owner.size(); ++cell)
+    if (owner[cell] == self) node_of_root_.push_back(node_of_cell_[cell]);
   root_value_.assign(owned_cells_, 0.0);
   leaf_value_.assign(cell_of_node_.size() + 1, 0.0);
   number_.assign(cell_of_node_.size(), -1);
@@ -170,8 +173,9 @@ void TwoLevelPreconditioner<Dim>::sum_at_roots() {
   check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
 }
 
+// The cells with enough particles.
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::number_nodes() {
+void TwoLevelPreconditioner<Dim>::find_coarse_rows() {
   std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
   for (const Patch& patch : patches_) {
     for (std::size_t i = patch.first; i < patch.last; ++i) {
@@ -183,6 +187,10 @@ void TwoLevelPreconditioner<Dim>::number_nodes() {
   root_.clear();
   for (std::size_t k = 0; k < owned_cells_; ++k)
     if (root_value_[k] >= least_node_weight) root_.push_back(k);
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::number_nodes() {
   PetscInt next = 0;
   const auto n_own = static_cast<PetscInt>(root_.size());
   MPI_Exscan(&n_own, &next, 1, MPIU_INT, MPI_SUM, comm_);
@@ -264,19 +272,26 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     }
   }
 
-  const auto n_own = static_cast<PetscInt>(root_.size());
-  check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, stencil_size, nullptr, stencil_size,
-                     nullptr, coarse_matrix_.address()));
+  // Sums at the roots, in an order that does not change from run to run.
+  std::vector<double> sums(owned_cells_ * stencil_size, 0.0);
+  MPI_Datatype whole_stencil;
+  MPI_Type_contiguous(stencil_size, MPI_DOUBLE, &whole_stencil);
+  MPI_Type_commit(&whole_stencil);
+  check(PetscSFReduceBegin(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  check(PetscSFReduceEnd(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  MPI_Type_free(&whole_stencil);
+
+  create_coarse_matrix();
   std::vector<PetscInt> columns;
   std::vector<double> values;
-  for (std::size_t node = 0; node < cell_of_node_.size(); ++node) {
-    if (number_[node] < 0) continue;
+  for (const std::size_t root : root_) {
+    const auto node = static_cast<std::size_t>(node_of_root_[root]);
     const auto centre = cells_.coordinates(cell_of_node_[node]);
     columns.clear();
     values.clear();
-    stencil[node * stencil_size + stencil_size / 2] *= 1.0 + regularisation;
+    sums[root * stencil_size + stencil_size / 2] *= 1.0 + regularisation;
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
-      const double value = stencil[node * stencil_size + static_cast<std::size_t>(k)];
+      const double value = sums[root * stencil_size + static_cast<std::size_t>(k)];
       if (value == 0.0) return;
       const int other = local_node(sum<Dim>(centre, offset));
       if (other < 0 || number_[static_cast<std::size_t>(other)] < 0) return;
@@ -286,6 +301,18 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     check(MatSetValues(coarse_matrix_, 1, &number_[node], static_cast<PetscInt>(columns.size()), columns.data(),
                        values.data(), ADD_VALUES));
   }
+  finish_coarse_matrix();
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::create_coarse_matrix() {
+  const auto n_own = static_cast<PetscInt>(root_.size());
+  check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, power(5, Dim), nullptr, power(5, Dim),
+                     nullptr, coarse_matrix_.address()));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::finish_coarse_matrix() {
   check(MatAssemblyBegin(coarse_matrix_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(coarse_matrix_, MAT_FINAL_ASSEMBLY));
   check(MatSetOption(coarse_matrix_, MAT_SPD, PETSC_TRUE));
@@ -303,6 +330,7 @@ void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<con
   find_interpolation(role, position);
   if (age_ == 1) fresh_iterations_ = iterations;
   if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
+    find_coarse_rows();
     number_nodes();
     build_coarse_matrix(matrix, role, position, halo);
     stale_ = false;
@@ -310,6 +338,47 @@ void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<con
     ++builds_;
   }
   ++age_;
+}
+
+template <int Dim>
+CoarseRows TwoLevelPreconditioner<Dim>::coarse_rows() const {
+  CoarseRows rows;
+  if (age() == 0) return rows;
+  rows.cell.assign(root_.begin(), root_.end());
+  PetscInt first = 0, end = 0;
+  check(MatGetOwnershipRange(coarse_matrix_, &first, &end));
+  for (PetscInt row = first; row < end; ++row) {
+    PetscInt length = 0;
+    const PetscInt* columns = nullptr;
+    const double* values = nullptr;
+    check(MatGetRow(coarse_matrix_, row, &length, &columns, &values));
+    rows.length.push_back(length);
+    rows.column.insert(rows.column.end(), columns, columns + length);
+    rows.value.insert(rows.value.end(), values, values + length);
+    check(MatRestoreRow(coarse_matrix_, row, &length, &columns, &values));
+  }
+  return rows;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations) {
+  root_.assign(rows.cell.begin(), rows.cell.end());
+  number_nodes();
+  create_coarse_matrix();
+  PetscInt row = 0;
+  check(MatGetOwnershipRange(coarse_matrix_, &row, nullptr));
+  const std::vector<PetscInt> columns(rows.column.begin(), rows.column.end());
+  std::size_t entry = 0;
+  for (const std::int64_t length : rows.length) {
+    check(MatSetValues(coarse_matrix_, 1, &row, static_cast<PetscInt>(length), &columns[entry], &rows.value[entry],
+                       INSERT_VALUES));
+    entry += static_cast<std::size_t>(length);
+    ++row;
+  }
+  finish_coarse_matrix();
+  stale_ = false;
+  age_ = age;
+  fresh_iterations_ = fresh_iterations;
 }
 
 template <int Dim>
@@ -375,8 +444,8 @@ template <int Dim>
 std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
   return inside_.capacity() * sizeof(Vec<Dim>) + patches_.capacity() * sizeof(Patch) +
          (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
-         (node_of_cell_.capacity() + cell_of_node_.capacity()) * sizeof(int) + number_.capacity() * sizeof(PetscInt) +
-         root_.capacity() * sizeof(std::size_t);
+         (node_of_cell_.capacity() + cell_of_node_.capacity() + node_of_root_.capacity()) * sizeof(int) +
+         number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
 }
 
 template class TwoLevelPreconditioner<2>;

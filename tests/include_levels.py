@@ -8,11 +8,11 @@ import re
 import sys
 
 LEVELS = [
-    ["types", "kernel", "lattice", "output_error"],
+    ["types", "kernel", "lattice", "output_error", "stop_signals"],
     ["petsc"],
     ["parallel"],
     ["analytic_jet", "particles"],
-    ["config"],
+    ["checkpoint", "config"],
     ["cell_grid", "partition"],
     ["domain", "geometry", "jet_geometry", "neighbours"],
     ["free_surface", "operators", "pressure", "snapshot"],

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "impinge/parallel.hpp"
+#include "impinge/snapshot.hpp"
 
 namespace {
 
@@ -30,6 +31,7 @@ class FailurePrinter : public testing::EmptyTestEventListener {
 }  // namespace
 
 int main(int argc, char** argv) {
+  impinge::leave_files_to_their_owners();
   MPI_Init(&argc, &argv);
   testing::InitGoogleTest(&argc, argv);
   const int rank = impinge::rank_of(MPI_COMM_WORLD);

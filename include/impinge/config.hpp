@@ -108,6 +108,11 @@ struct Config {
   } output;
 
   struct {
+    int steps = 0;          ///< a checkpoint every so many steps; 0: none by steps
+    double minutes = 15.0;  ///< and every so many minutes of wall-clock time; 0: none by time
+  } checkpoint;
+
+  struct {
     Partitioner partitioner = Partitioner::metis;
     double imbalance = 1.1;  ///< repartition when max/mean of the owned particles passes it
   } parallel;
@@ -136,6 +141,11 @@ std::vector<NamedText> load_case_files(const std::string& path);
 /// Parses and validates; later files are defaults for earlier ones, `settings` ("key=value") override all.
 /// Touches no file. Throws InputError with every mistake, in the order of the files and their lines.
 Config parse_case(const std::vector<NamedText>& files, const std::vector<std::string>& settings = {});
+
+/// The case of a run that is restarted in `directory`: the case text of its checkpoint with `settings` over it. Touches
+/// no file. Throws InputError, also where a setting changes what a run cannot change; OutputError where the text itself
+/// is no case.
+Config parse_restart(const NamedText& stored, const std::vector<std::string>& settings, const std::string& directory);
 
 /// Every key with type, unit, default, range and doc line, as a text for the terminal.
 std::string describe_keys();

@@ -68,6 +68,9 @@ class Domain {
   /// distribute_cells). Reads owned positions and types. Collective.
   void partition(const Particles<Dim>& particles);
 
+  /// Assigns the cells as an earlier partition did, `owner`: rank of each cell. Not collective.
+  void set_owners(std::vector<int> owner, double achieved_imbalance);
+
   /// Largest over mean work of the ranks. Collective.
   double imbalance(const Particles<Dim>& particles) const;
 

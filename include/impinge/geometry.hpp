@@ -16,6 +16,12 @@ struct BoundaryFlow {
   std::int64_t left = 0;
 };
 
+/// What an inlet remembers from step to step.
+struct InletState {
+  double last_row = 0.0;  ///< distance of the hindmost buffer row from the inlet plane, along the flow [m]
+  std::int64_t next_id = 0;
+};
+
 /// The scene of a case. Walls of particles: the surface lies half a spacing in front of the row of wall particles, and
 /// ghost rows stand behind it. Mirror walls: the surface is an edge of the bounds, and wall particles on it measure the
 /// pressure.
@@ -44,6 +50,10 @@ class Geometry {
                                        const std::function<bool(const Vec<Dim>&)>& /*owns*/) {
     return {};
   }
+
+  /// The inlet after the steps so far, to be set in a run that goes on from there.
+  virtual InletState inlet() const { return {}; }
+  virtual void set_inlet(const InletState&) {}
 
   /// Unit normal of the wall, into the fluid, at one of its wall particles [-]; between the walls' normals in a corner.
   virtual Vec<Dim> wall_normal(const Vec<Dim>& /*position*/) const { return {}; }

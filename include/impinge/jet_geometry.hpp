@@ -18,6 +18,8 @@ class JetGeometry final : public Geometry<2> {
   Vec<2> inlet_velocity() const override { return speed_ * along_; }
   BoundaryFlow move_boundaries(double dt, Particles<2>& particles,
                                const std::function<bool(const Vec<2>&)>& owns) override;
+  InletState inlet() const override { return inlet_; }
+  void set_inlet(const InletState& inlet) override { inlet_ = inlet; }
   Vec<2> wall_normal(const Vec<2>&) const override { return {{0.0, 1.0}}; }
   std::int64_t wall_of_ghost(std::int64_t ghost) const override;
   bool on_floor(const Vec<2>&) const override { return true; }
@@ -48,8 +50,7 @@ class JetGeometry final : public Geometry<2> {
   std::int64_t wall_columns_;
   std::int64_t column_rows_;
   std::int64_t steady_rows_;
-  double last_row_;  // s of the hindmost buffer row [m]
-  std::int64_t next_id_;
+  InletState inlet_;
 };
 
 }  // namespace impinge

@@ -22,6 +22,11 @@ void plan_case(MPI_Comm comm, const Config& config, int ranks);
 
 /// Runs the case to its end, with progress on the terminal and files in the output directory. Collective. Throws
 /// SolveError after the last state has been written, InputError also for PETSc options that nothing uses, OutputError.
-void run_case(MPI_Comm comm, const Config& config);
+/// Returns false where a signal ended the run before, with a checkpoint.
+bool run_case(MPI_Comm comm, const Config& config);
+
+/// Goes on from the last checkpoint in `directory` that can be read, with `settings` over its case; tells about others.
+/// Otherwise as run_case. Throws InputError where there is none.
+bool restart_case(MPI_Comm comm, const std::string& directory, const std::vector<std::string>& settings);
 
 }  // namespace impinge

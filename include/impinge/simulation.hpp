@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "impinge/checkpoint.hpp"
 #include "impinge/config.hpp"
 #include "impinge/domain.hpp"
 #include "impinge/free_surface.hpp"
@@ -34,8 +35,8 @@ inline constexpr std::array phase_names{"Predict",    "Redistribute", "Neighbour
                                         "PPE set-up", "PPE solve",    "Correct",    "Stocktaking"};
 
 /// What bounds the time step.
-enum class StepLimit { case_dt, cfl, growth };
-inline constexpr std::array step_limit_names{"case", "CFL", "growth"};
+enum class StepLimit { case_dt, cfl, growth, retry };
+inline constexpr std::array step_limit_names{"case", "CFL", "growth", "retry"};
 
 /// Totals over all ranks after a step.
 struct StepReport {
@@ -53,6 +54,8 @@ struct StepReport {
   double max_pressure = 0.0;             ///< [Pa]
   double floor_force = 0.0;              ///< pressure force on plate or floor [N; N/m in 2D]
   PressureReport pressure;
+  int cold_solves = 0;  ///< pressure solves of the step that were repeated from zero with a new preconditioner
+  int halvings = 0;     ///< how often the step was repeated with half the time step
 };
 
 /// What a run takes for each of its items: sizes of the arrays and messages, rows as on the full lattice.
@@ -71,12 +74,19 @@ double cell_reach(const Config& config);
 template <int Dim>
 class Simulation {
  public:
-  /// Creates, partitions and sorts the initial particles; number density and free surface are measured. Throws
-  /// SolveError where particles lie outside the background grid.
-  Simulation(MPI_Comm comm, const Config& config);
+  /// Creates, partitions and sorts the initial particles, or those of a checkpoint, which go on as those of the
+  /// simulation that it was taken from would: bitwise on the same number of ranks. Number density and free surface are
+  /// measured. Throws SolveError where particles lie outside the background grid, OutputError where the checkpoint does
+  /// not fit the case.
+  Simulation(MPI_Comm comm, const Config& config, const Checkpoint<Dim>* checkpoint = nullptr);
 
-  /// Advances by one time step. Throws SolveError; particles() then hold the state of the phase that failed.
+  /// Advances by one time step. A pressure solve that fails is repeated from zero with a new preconditioner, then the
+  /// step with half its dt, at most four times. Throws SolveError; particles() then hold the state of the phase that
+  /// failed.
   void step();
+
+  /// All that the next step depends on.
+  Checkpoint<Dim> checkpoint() const;
 
   /// Makes the next pressure solve a cold one: it starts from zero and with a new coarse matrix.
   void forget_pressure();
@@ -103,15 +113,23 @@ class Simulation {
   double imbalance() const { return domain_.imbalance(particles_); }
 
  private:
+  void try_step();
+  void save(Checkpoint<Dim>& state) const;
+  void restore(const Checkpoint<Dim>& state);
+  template <class Use>
+  static void for_numbers(StepReport& report, double& window_begin, double& window_end, InletState& inlet, Use&& use);
+
   void choose_time_step();
   void accelerate();
   void collide();
   void advance();
   void move_boundaries();
   void redistribute();
+  void migrate();
   void find_neighbours();
   void measure_density();
   void solve_pressure();
+  void try_pressure();
   void correct();
   void shift();
   void take_stock();
@@ -140,6 +158,8 @@ class Simulation {
   std::optional<TwoLevelPreconditioner<Dim>> two_level_;  // if the options chose no other preconditioner
   int partitions_seen_ = 0;                               // by two_level_
   Particles<Dim> particles_;
+  std::vector<Vec<Dim>> searched_position_;  // of the owned particles when the neighbours were searched
+  Checkpoint<Dim> step_start_;               // without owners and coarse matrix
   StepReport report_;
   double window_begin_ = 0.0;
   double window_end_ = 0.0;

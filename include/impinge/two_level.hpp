@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "impinge/cell_grid.hpp"
+#include "impinge/checkpoint.hpp"
 #include "impinge/petsc.hpp"
 #include "impinge/pressure.hpp"
 
@@ -37,6 +38,15 @@ class TwoLevelPreconditioner {
   void update(const MatrixRows& matrix, std::span<const PressureRole> role, std::span<const Vec<Dim>> position,
               const Halo& halo, int iterations);
 
+  /// This rank's rows of the coarse matrix, nothing where the next update renews it anyway; its age and iterations. Not
+  /// collective.
+  CoarseRows coarse_rows() const;
+  int age() const { return stale_ ? 0 : age_; }
+  int fresh_iterations() const { return fresh_iterations_; }
+
+  /// Takes the coarse matrix that another object had with the same owners. Collective.
+  void set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations);
+
   /// Makes `preconditioner` (a shell) this one. Collective.
   void attach(PC preconditioner);
 
@@ -65,7 +75,10 @@ class TwoLevelPreconditioner {
   std::array<int, Dim> place(const Vec<Dim>& position, Vec<Dim>& inside) const;
   void find_interpolation(std::span<const PressureRole> role, std::span<const Vec<Dim>> position);
   void sum_at_roots();  // leaf_value_ into root_value_
+  void find_coarse_rows();
   void number_nodes();
+  void create_coarse_matrix();
+  void finish_coarse_matrix();
   void build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
                            std::span<const Vec<Dim>> position, const Halo& halo);
   Corners interpolation(std::size_t i) const;
@@ -75,6 +88,7 @@ class TwoLevelPreconditioner {
   CellGrid<Dim> cells_;
   std::vector<int> node_of_cell_;  // local node of a cell, -1 far from this rank
   std::vector<int> cell_of_node_;
+  std::vector<int> node_of_root_;
   std::size_t owned_cells_ = 0;
   PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
 

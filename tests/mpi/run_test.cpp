@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -184,6 +185,113 @@ TEST(Run, EndsWhereThePressureDoesNotConverge) {
   check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
   EXPECT_EQ(error.phase(), "pressure");
   EXPECT_NE(std::string(error.what()).find("DIVERGED_ITS"), std::string::npos) << error.what();
+}
+
+int failures_to_come = 0;
+
+/// While it lives, the preconditioner is Jacobi's, but gives nothing but NaN where failures_to_come says so.
+class FlakyPreconditioner {
+ public:
+  FlakyPreconditioner() {
+    check(PCRegister("flaky", [](PC preconditioner) -> PetscErrorCode {
+      if (failures_to_come == 0) return PCSetType(preconditioner, PCJACOBI);
+      --failures_to_come;
+      PetscCall(PCSetType(preconditioner, PCSHELL));
+      return PCShellSetApply(preconditioner,
+                             [](PC, ::Vec, ::Vec result) -> PetscErrorCode { return VecSet(result, std::nan("")); });
+    }));
+    check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "flaky"));
+  }
+  ~FlakyPreconditioner() {
+    failures_to_come = 0;
+    PetscOptionsClearValue(nullptr, "-ppe_pc_type");
+  }
+};
+
+TEST(Run, RepeatsAFailedSolveFromZeroThenTheStepWithHalfItsDt) {
+  const FlakyPreconditioner flaky;
+  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  for (int step = 0; step < 12; ++step) simulation.step();
+  EXPECT_EQ(simulation.report().cold_solves, 0);
+  EXPECT_EQ(simulation.report().halvings, 0);
+  Checkpoint<2> before = simulation.checkpoint();
+
+  for (const int failures : {1, 2, 5, 9}) {
+    Simulation<2> retried(MPI_COMM_WORLD, jet_case(), &before);
+    failures_to_come = failures;
+    retried.step();
+    const int halvings = failures / 2;
+    EXPECT_EQ(failures_to_come, 0);
+    EXPECT_EQ(retried.report().step, 13);
+    EXPECT_EQ(retried.report().halvings, halvings);
+    EXPECT_EQ(retried.report().cold_solves, (failures + 1) / 2);
+    EXPECT_EQ(retried.report().limit == StepLimit::retry, halvings > 0);
+    if (failures % 2 == 0) {  // the step that succeeded was not cold: it is one that had this dt from the start
+      Checkpoint<2> fresh = before;
+      fresh.numbers["coarse_age"] = 0.0;
+      Simulation<2> small(MPI_COMM_WORLD, jet_case({fmt::format("time.dt={}", retried.report().dt)}), &fresh);
+      small.step();
+      EXPECT_EQ(small.particles().position, retried.particles().position);
+      EXPECT_EQ(small.particles().velocity, retried.particles().velocity);
+      EXPECT_EQ(small.particles().pressure, retried.particles().pressure);
+    }
+    const double dt = retried.report().dt;
+    retried.step();
+    EXPECT_EQ(retried.report().cold_solves, 0);
+    EXPECT_EQ(retried.report().halvings, 0);
+    EXPECT_LE(retried.report().dt, 1.1 * dt);
+  }
+
+  failures_to_come = 10;
+  EXPECT_THROW(simulation.step(), SolveError);
+  EXPECT_EQ(simulation.report().halvings, 4);
+  EXPECT_EQ(simulation.report().cold_solves, 5);
+}
+
+// A coarse matrix that turned bad: the fresh one of the second solve is good.
+TEST(Run, OutlivesABadCoarseMatrix) {
+  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  for (int step = 0; step < 12; ++step) simulation.step();
+  Checkpoint<2> state = simulation.checkpoint();
+  for (double& value : state.coarse.value) value = -value;
+  Simulation<2> retried(MPI_COMM_WORLD, jet_case(), &state);
+  simulation.step();
+  retried.step();
+  EXPECT_EQ(retried.report().cold_solves, 1);
+  EXPECT_EQ(retried.report().halvings, 0);
+  EXPECT_NEAR(retried.report().max_pressure, simulation.report().max_pressure, 1e-8 * retried.report().max_pressure);
+}
+
+/// How the step ends after `spoil` changed a fluid particle of some rank, and how many particles are lost.
+template <class Spoil>
+std::pair<std::string, std::int64_t> end_of_step_after(Spoil&& spoil) {
+  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  simulation.step();
+  Checkpoint<2> state = simulation.checkpoint();
+  auto& type = state.particles.type;
+  const auto fluid = static_cast<std::size_t>(std::find(type.begin(), type.end(), ParticleType::fluid) - type.begin());
+  const int self = rank_of(MPI_COMM_WORLD);
+  if (max_over_ranks(MPI_COMM_WORLD, fluid < type.size() ? self : -1) == self) spoil(state.particles, fluid);
+  Simulation<2> spoilt(MPI_COMM_WORLD, jet_case(), &state);
+  try {
+    spoilt.step();
+  } catch (const SolveError& error) {
+    return {error.what(), spoilt.report().lost};
+  }
+  return {"no failure", 0};
+}
+
+TEST(Run, EndsInTheStepWhereAVelocityIsNotANumber) {
+  const auto [end, lost] =
+      end_of_step_after([](auto& particles, std::size_t i) { particles.velocity[i][0] = std::nan(""); });
+  EXPECT_TRUE(end.starts_with("step 2, phase ")) << end;
+  EXPECT_GT(lost, 0);
+}
+
+TEST(Run, CountsAParticleThatIsLost) {
+  const auto [end, lost] = end_of_step_after([](auto& particles, std::size_t i) { particles.position[i][1] = -1e9; });
+  EXPECT_EQ(end, "step 2, phase redistribute: 1 particle(s) left the domain other than by an outlet");
+  EXPECT_EQ(lost, 1);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "impinge/snapshot.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,30 +11,12 @@
 #include <map>
 
 #include "impinge/parallel.hpp"
+#include "shared_directory.hpp"
 
 namespace impinge {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A directory that all ranks share, removed at the end.
-class SharedDirectory : public testing::Test {
- protected:
-  void SetUp() override {
-    path_ =
-        broadcast(MPI_COMM_WORLD, (fs::temp_directory_path() / ("impinge_" + std::to_string(getpid()))).string(), 0);
-    if (rank_of(MPI_COMM_WORLD) == 0) fs::create_directories(path_);
-    MPI_Barrier(MPI_COMM_WORLD);
-  }
-  void TearDown() override {
-    MPI_Barrier(MPI_COMM_WORLD);
-    if (rank_of(MPI_COMM_WORLD) == 0) fs::remove_all(path_);
-    MPI_Barrier(MPI_COMM_WORLD);
-  }
-  std::string path(const std::string& name) const { return (fs::path(path_) / name).string(); }
-
-  std::string path_;
-};
 
 /// Particle k of a made-up state, wall or fluid, all fields different.
 template <int Dim>
@@ -177,8 +158,9 @@ TEST_F(SharedDirectory, RefusesWhatIsNoSnapshot) {
 
 TEST_F(SharedDirectory, ListsSnapshotsByStep) {
   if (rank_of(MPI_COMM_WORLD) > 0) return;
-  for (const char* name : {"a_00000010.vtkhdf", "a_00000002.vtkhdf", "a_b_00000001.vtkhdf", "a_00000003.vtkhdf.partial",
-                           "a_3.vtkhdf", "a_123456789.vtkhdf", "a_history.csv"})
+  for (const char* name :
+       {"a_00000010.vtkhdf", "a_00000002.vtkhdf", "a_b_00000001.vtkhdf", "a_00000003.vtkhdf.partial", "a_3.vtkhdf",
+        "a_123456789.vtkhdf", "a_history.csv", "a_00000004.checkpoint", "a_00000005.checkpoint.partial"})
     std::ofstream(path(name)) << "";
   const auto names = [&](const std::string& name) {
     std::vector<std::string> found;
@@ -188,6 +170,13 @@ TEST_F(SharedDirectory, ListsSnapshotsByStep) {
   EXPECT_EQ(names("a"), (std::vector<std::string>{"a_00000002.vtkhdf", "a_00000010.vtkhdf", "a_123456789.vtkhdf"}));
   EXPECT_EQ(names("").size(), 4u);
   EXPECT_EQ(snapshot_path("out", "a", 10), "out/a_00000010.vtkhdf");
+  EXPECT_EQ(list_checkpoints(path_), std::vector{path("a_00000004.checkpoint")});
+  EXPECT_EQ(list_partial_files(path_, "a"),
+            (std::vector{path("a_00000003.vtkhdf.partial"), path("a_00000005.checkpoint.partial")}));
+  EXPECT_EQ(list_partial_files(path_, "b").size(), 0u);
+  EXPECT_EQ(checkpoint_path("out", "a", 10), "out/a_00000010.checkpoint");
+  EXPECT_EQ(name_and_step("out/a_b_00000010.checkpoint"), std::pair(std::string("a_b"), std::int64_t{10}));
+  EXPECT_THROW(name_and_step("a_history.csv"), OutputError);
   EXPECT_THROW(list_snapshots(path("nowhere")), OutputError);
 }
 

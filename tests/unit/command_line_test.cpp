@@ -41,6 +41,19 @@ TEST(CommandLine, TakesANumberOfRanksToPlanFor) {
   EXPECT_NE(mistake_in({"case.toml", "--plan", "4", "--check"}).find("--check"), std::string::npos);
 }
 
+TEST(CommandLine, TakesADirectoryToGoOnIn) {
+  const CommandLine line = parse_command_line({"--restart", "out/x", "--set", "time.end=9", "-log_view"});
+  EXPECT_EQ(line.restart_directory, "out/x");
+  EXPECT_EQ(line.case_path, "");
+  EXPECT_EQ(line.settings, Words{"time.end=9"});
+  for (const Words& more : {Words{"case.toml"}, Words{"--check"}, Words{"--plan", "2"}}) {
+    Words words{"--restart", "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_NE(mistake_in(words).find("--restart"), std::string::npos) << more.front();
+  }
+  EXPECT_NE(mistake_in({"--restart"}).find("--restart"), std::string::npos);
+}
+
 TEST(CommandLine, SplitsOffPetscOptionsInOrder) {
   const CommandLine line = parse_command_line({"-ppe_ksp_monitor", "case.toml", "-ppe_ksp_rtol", "1e-8", "-log_view",
                                                "--set", "time.end=1", "-ppe_shift", "-1.5", "-ppe_pc_type", "gamg"});
@@ -54,9 +67,9 @@ TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
   for (const Words& arguments :
        {Words{"--help"}, Words{"-h"}, Words{"-log_view", "-h"}, Words{"case.toml", "--help"}}) {
     const std::string text = parse_command_line(arguments).text;
-    for (const char* part :
-         {"--set", "--check", "--plan RANKS", "--describe", "--version", "CASE.toml", "-ppe_ksp_type cg",
-          "-ppe_pc_type two_level|hypre|gamg", "-ppe_ksp_monitor", "-log_view", "2 wrong input"}) {
+    for (const char* part : {"--set", "--check", "--plan RANKS", "--describe", "--version", "CASE.toml",
+                             "-ppe_ksp_type cg", "-ppe_pc_type two_level|hypre|gamg", "-ppe_ksp_monitor", "-log_view",
+                             "2 wrong input", "--restart DIR", "4 ended by a signal"}) {
       EXPECT_NE(text.find(part), text.npos) << part;
     }
   }

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "impinge/output_error.hpp"
+
 namespace impinge {
 namespace {
 
@@ -777,6 +779,38 @@ TEST(Config, ThePapersCasesAreThoseOfItsTables) {
   check("A3", 0.0, KernelType::non_singular);
   check("B1", 0.01, KernelType::singular);
   check("B2", 0.01, KernelType::non_singular);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The case of a restart.
+
+const NamedText stored{"x_00000007.checkpoint", parse("name = \"x\"").resolved_text};
+
+TEST(RestartCase, TakesSettingsOverTheStoredCase) {
+  const Config config = parse_restart(stored, {"time.end=7", "checkpoint.steps=3", "jet.speed=1.0"}, "a \"b\"");
+  EXPECT_EQ(config.time.end, 7.0);
+  EXPECT_EQ(config.checkpoint.steps, 3);
+  EXPECT_EQ(config.output.directory, "a \"b\"");
+  EXPECT_EQ(config.output.average_start, 4.0);  // of the stored case
+  EXPECT_NE(config.resolved_text.find(R"(directory = "a \"b\"")"), std::string::npos) << config.resolved_text;
+}
+
+TEST(RestartCase, RefusesWhatARunCannotChange) {
+  const auto mistakes_of = [](const Texts& settings) {
+    return mistakes([&] { parse_restart(stored, settings, "out"); });
+  };
+  EXPECT_EQ(mistakes_of({"particles.spacing=0.01", "jet.speed=2", "output.directory=here"}),
+            (Texts{"--set: particles.spacing = 0.01: a restart cannot change this key; allowed: 0.02",
+                   "--set: jet.speed = 2.0: a restart cannot change this key; allowed: 1.0",
+                   "--set: output.directory = \"here\": a restart cannot change this key; allowed: \"output/x\""}));
+  for (const char* setting :
+       {"name=y", "scheme=paper", "fluid.density=900", "kernel.radius=2.5", "walls.model=columns", "plate.end=3"})
+    EXPECT_EQ(mistakes_of({setting}).size(), 1u) << setting;
+  EXPECT_EQ(mistakes_of({"time.dt=-1"}), (Texts{"--set: time.dt = -1: out of range; allowed: > 0 (s)"}));
+}
+
+TEST(RestartCase, RefusesAForeignText) {
+  EXPECT_THROW(parse_restart({"x_00000007.checkpoint", "geometry = 7"}, {}, "out"), OutputError);
 }
 
 }  // namespace

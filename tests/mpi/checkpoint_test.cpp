@@ -1,0 +1,218 @@
+// Checkpoints: a simulation that goes on from one is bitwise the one that never stopped; damaged files are refused.
+
+#include "impinge/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "gather.hpp"
+#include "impinge/simulation.hpp"
+#include "impinge/snapshot.hpp"
+#include "shared_directory.hpp"
+#include "shipped_case.hpp"
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* tight = "pressure.tolerance=1e-12";
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b, int count) {
+  return std::memcmp(a.data(), b.data(), sizeof(T) * static_cast<std::size_t>(count)) == 0;
+}
+
+template <int Dim>
+void expect_the_same_state(const Simulation<Dim>& a, const Simulation<Dim>& b) {
+  const Particles<Dim>& left = a.particles();
+  const Particles<Dim>& right = b.particles();
+  ASSERT_EQ(left.owned, right.owned);
+  EXPECT_TRUE(same_bits(left.id, right.id, left.owned));
+  EXPECT_TRUE(same_bits(left.type, right.type, left.owned));
+  EXPECT_TRUE(same_bits(left.position, right.position, left.owned));
+  EXPECT_TRUE(same_bits(left.velocity, right.velocity, left.owned));
+  EXPECT_TRUE(same_bits(left.pressure, right.pressure, left.owned));
+  EXPECT_TRUE(same_bits(left.pressure_impulse, right.pressure_impulse, left.owned));
+  EXPECT_TRUE(same_bits(left.number_density, right.number_density, left.owned));
+  EXPECT_TRUE(same_bits(left.free_surface, right.free_surface, left.owned));
+  EXPECT_EQ(a.checkpoint().numbers, b.checkpoint().numbers);
+  EXPECT_TRUE(std::ranges::equal(a.domain().owners(), b.domain().owners()));
+}
+
+template <int Dim>
+void write(MPI_Comm comm, const std::string& path, const Simulation<Dim>& simulation) {
+  write_checkpoint(comm, path, simulation.checkpoint(),
+                   {.dimension = Dim,
+                    .step = simulation.report().step,
+                    .time = simulation.report().time,
+                    .status = "running",
+                    .message = "",
+                    .case_text = "",
+                    .code_version = {}});
+}
+
+template <int Dim>
+double farthest(const Simulation<Dim>& a, MPI_Comm comm_a, const Simulation<Dim>& b, MPI_Comm comm_b) {
+  const auto left = gather_by_id(comm_a, a.particles(), a.particles().position);
+  const auto right = gather_by_id(comm_b, b.particles(), b.particles().position);
+  EXPECT_EQ(left.size(), right.size());
+  double distance = 0.0;
+  for (const auto& [id, position] : left) distance = std::max(distance, norm(position - right.at(id)));
+  return distance;
+}
+
+class Restart : public SharedDirectory {
+ protected:
+  /// Goes on from several steps, on as many ranks and on one.
+  template <int Dim>
+  void expect_the_same_run(const Config& config, int steps) {
+    Simulation<Dim> whole(MPI_COMM_WORLD, config);
+    std::vector<std::string> files;
+    for (int step = 0; step <= steps; ++step) {
+      if (step > 0) whole.step();
+      if (step == 0 || step == 1 || step == steps / 2 || step == steps - 3 || step == steps) {
+        files.push_back(checkpoint_path(path_, "x", step));
+        write(MPI_COMM_WORLD, files.back(), whole);
+        EXPECT_FALSE(fs::exists(files.back() + ".partial"));
+      }
+    }
+    for (const std::string& file : files) {
+      SCOPED_TRACE(file);
+      const auto from = read_checkpoint<Dim>(MPI_COMM_WORLD, file);
+      Simulation<Dim> again(MPI_COMM_WORLD, config, &from);
+      while (again.report().step < steps) again.step();
+      expect_the_same_state(again, whole);
+    }
+    if (ranks_of(MPI_COMM_WORLD) == 1) return;
+    const auto from = read_checkpoint<Dim>(MPI_COMM_SELF, files[2]);
+    Simulation<Dim> alone(MPI_COMM_SELF, config, &from);
+    while (alone.report().step < steps) alone.step();
+    EXPECT_LT(farthest(alone, MPI_COMM_SELF, whole, MPI_COMM_WORLD), 1e-8 * config.particles.spacing);
+  }
+};
+
+Config jet_case(std::vector<std::string> settings) {
+  settings.insert(settings.begin(), {"jet.width=0.4", "particles.spacing=0.04", "time.dt=1.6e-3"});
+  return shipped_case("jet.toml", settings);
+}
+
+TEST_F(Restart, ContinuesAJetOfEveryScheme) {
+  for (const char* scheme : {"scheme=consistent", "scheme=paper", "walls.model=columns"}) {
+    SCOPED_TRACE(scheme);
+    expect_the_same_run<2>(jet_case({scheme, tight, "output.average_start=0.01"}), 40);
+  }
+}
+
+TEST_F(Restart, ContinuesWhereThePartitionChanges) {
+  expect_the_same_run<2>(jet_case({tight, "parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"}), 60);
+}
+
+TEST_F(Restart, ContinuesTanks) {
+  expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight}), 30);
+  expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight, "fluid.viscosity=1e-3", "time.dt=1e-4"}), 15);
+  expect_the_same_run<3>(shipped_case("hydrostatic-3d.toml", {tight}), 6);
+}
+
+TEST_F(Restart, ContinuesWithAnEmptyRank) {
+  expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight, "tank.size=[0.05,0.06]", "tank.fluid_height=0.03"}),
+                         20);
+}
+
+TEST_F(Restart, ContinuesAPeriodicViscousFlow) { expect_the_same_run<2>(shipped_case("shear-wave.toml", {tight}), 20); }
+
+TEST_F(Restart, ContinuesWithAnyPreconditioner) {
+  check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "hypre"));
+  expect_the_same_run<2>(jet_case({tight}), 15);
+  check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
+}
+
+template <class Action>
+std::string failure_of(Action action) {
+  try {
+    action();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
+  const Config config = jet_case({});
+  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  const std::string whole = path("x_00000000.checkpoint");
+  write(MPI_COMM_WORLD, whole, simulation);
+  const std::string snapshot = path("x_00000000.vtkhdf");
+  write_snapshot(MPI_COMM_WORLD, snapshot, simulation.particles(),
+                 {.status = "", .message = "", .case_text = "", .code_version = {}});
+  const std::string cut = path("cut.checkpoint");
+  const std::string text = path("text.checkpoint");
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    fs::copy_file(whole, cut);
+    fs::resize_file(cut, fs::file_size(cut) / 2);
+    std::ofstream(text) << "not HDF5";
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const auto failure = [&](const std::string& file) {
+    return failure_of([&] { read_checkpoint<2>(MPI_COMM_WORLD, file); });
+  };
+  EXPECT_EQ(failure(whole), "");
+  for (const std::string& file : {cut, text, snapshot, path("none")})
+    EXPECT_TRUE(failure(file).starts_with("cannot read " + file + ": ")) << failure(file);
+  EXPECT_NE(failure(cut).find("truncated"), std::string::npos) << failure(cut);
+  EXPECT_NE(failure(snapshot).find("a snapshot, not a checkpoint"), std::string::npos) << failure(snapshot);
+  EXPECT_NE(failure_of([&] { read_checkpoint<3>(MPI_COMM_WORLD, whole); }).find("it has 2 dimensions, not 3"),
+            std::string::npos);
+
+  const auto from = read_checkpoint<2>(MPI_COMM_WORLD, whole);
+  const Config other = jet_case({"kernel.laplacian_radius=6.0"});
+  EXPECT_NE(failure_of([&] { Simulation<2>(MPI_COMM_WORLD, other, &from); }).find("background cells"),
+            std::string::npos);
+}
+
+// A byte that changed anywhere is noticed, or it stands in a gap between what is read.
+TEST_F(Restart, NoticesEveryChangedByte) {
+  const Config config = jet_case({});
+  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  const std::string whole = path("x_00000003.checkpoint");
+  write(MPI_COMM_WORLD, whole, simulation);
+  if (rank_of(MPI_COMM_WORLD) > 0) return;
+
+  std::string bytes;
+  {
+    std::ifstream file(whole, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  const auto expected = read_checkpoint<2>(MPI_COMM_SELF, whole);
+  const std::string changed = path("changed.checkpoint");
+  int noticed = 0;
+  constexpr std::size_t places = 400;
+  for (std::size_t k = 0; k < places; ++k) {
+    std::string copy = bytes;
+    char& byte = copy[k * bytes.size() / places];
+    byte = static_cast<char>(byte ^ 0x10);
+    std::ofstream(changed, std::ios::binary) << copy;
+    try {
+      read_header(changed);
+      const auto found = read_checkpoint<2>(MPI_COMM_SELF, changed);
+      ASSERT_EQ(found.numbers, expected.numbers) << k;
+      ASSERT_EQ(found.particles.position, expected.particles.position) << k;
+      ASSERT_EQ(found.particles.velocity, expected.particles.velocity) << k;
+      ASSERT_EQ(found.particles.pressure, expected.particles.pressure) << k;
+      ASSERT_EQ(found.particles.type, expected.particles.type) << k;
+      ASSERT_EQ(found.particles.id, expected.particles.id) << k;
+      ASSERT_EQ(found.searched_position, expected.searched_position) << k;
+    } catch (const OutputError&) {
+      ++noticed;
+    }
+  }
+  std::printf("  %d of %zu changed bytes noticed, the others are not read\n", noticed, places);
+  EXPECT_GT(noticed, static_cast<int>(places / 2));
+}
+
+}  // namespace
+}  // namespace impinge
