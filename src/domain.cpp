@@ -188,15 +188,17 @@ std::int64_t Domain<Dim>::migrate(Particles<Dim>& particles) {
 
 template <int Dim>
 void Domain<Dim>::sort_along_cells(Particles<Dim>& particles) const {
-  const auto n = static_cast<std::size_t>(particles.owned);
-  std::vector<std::tuple<int, std::int64_t, int>> order(n);
-  for (std::size_t i = 0; i < n; ++i)
-    order[i] = {fine_.cell(particles.position[i]), particles.id[i], static_cast<int>(i)};
-  if (std::is_sorted(order.begin(), order.end())) return;
-  std::sort(order.begin(), order.end());
-  std::vector<ParticleRecord<Dim>> sorted(n);
-  for (std::size_t i = 0; i < n; ++i) sorted[i] = particles.record(std::get<2>(order[i]));
-  for (std::size_t i = 0; i < n; ++i) particles.set_record(static_cast<int>(i), sorted[i]);
+  std::vector<int> cell(static_cast<std::size_t>(particles.owned));
+  for (std::size_t i = 0; i < cell.size(); ++i) cell[i] = fine_.cell(particles.position[i]);
+  const auto before = [&](int a, int b) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    return cell[i] != cell[j] ? cell[i] < cell[j] : particles.id[i] < particles.id[j];
+  };
+  std::vector<int> order(cell.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (std::ranges::is_sorted(order, before)) return;
+  std::ranges::sort(order, before);
+  particles.reorder(order);
 }
 
 template <int Dim>

@@ -214,14 +214,19 @@ void NeighbourSearch<Dim>::find_near(const Particles<Dim>& particles) {
 }
 
 template <int Dim>
+Vec<Dim> NeighbourSearch<Dim>::searched_position(int i) const {
+  const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+  Vec<Dim> position;
+  for (int k = 0; k < Dim; ++k) position[k] = entry_position_[static_cast<std::size_t>(k)][place];
+  return position;
+}
+
+template <int Dim>
 PairRow NeighbourSearch<Dim>::far_row(int i) {
   const ParticleType type = type_[static_cast<std::size_t>(i)];
   if (type != ParticleType::fluid && (type != ParticleType::wall || mirrored_)) return {};
   const auto append = [&](int j, std::size_t used) {
-    const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(j)]);
-    Vec<Dim> centre;
-    for (int k = 0; k < Dim; ++k) centre[k] = entry_position_[static_cast<std::size_t>(k)][place];
-    return append_within(far_radius_, -1.0, j, centre, used);
+    return append_within(far_radius_, -1.0, j, searched_position(j), used);
   };
   std::size_t count = append(i, 0);
   if (column_.empty()) {

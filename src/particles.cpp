@@ -1,18 +1,40 @@
 #include "impinge/particles.hpp"
 
+#include <tuple>
+
 namespace impinge {
+namespace {
+
+/// All arrays of some particles.
+template <class Particles>
+auto fields(Particles& p) {
+  return std::tie(p.position, p.velocity, p.pressure, p.pressure_impulse, p.number_density, p.id, p.type,
+                  p.free_surface);
+}
+
+}  // namespace
 
 template <int Dim>
 void Particles<Dim>::resize(int size) {
-  const auto n = static_cast<std::size_t>(size);
-  position.resize(n);
-  velocity.resize(n);
-  pressure.resize(n);
-  pressure_impulse.resize(n);
-  number_density.resize(n);
-  id.resize(n);
-  type.resize(n);
-  free_surface.resize(n);
+  std::apply([&](auto&... field) { (field.resize(static_cast<std::size_t>(size)), ...); }, fields(*this));
+}
+
+template <int Dim>
+void Particles<Dim>::copy_owned(const Particles& other) {
+  owned = other.owned;
+  const auto copy = [&](auto& to, const auto& from) { to.assign(from.begin(), from.begin() + owned); };
+  std::apply([&](auto&... to) { std::apply([&](const auto&... from) { (copy(to, from), ...); }, fields(other)); },
+             fields(*this));
+}
+
+template <int Dim>
+void Particles<Dim>::reorder(std::span<const int> order) {
+  const auto reorder_field = [&](auto& field) {
+    auto sorted = field;
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[static_cast<std::size_t>(order[k])];
+    field.swap(sorted);
+  };
+  std::apply([&](auto&... field) { (reorder_field(field), ...); }, fields(*this));
 }
 
 template <int Dim>

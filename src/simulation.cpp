@@ -46,7 +46,7 @@ bool has_columns(const Config& config) { return config.walls.model == WallModel:
 // Arrays of one entry per particle.
 template <int Dim>
 constexpr std::size_t particle_bytes = 2 * (sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t)) +
-                                       sizeof(PressureRole) + 2 * sizeof(double) + 6 * sizeof(Vec<Dim>) +
+                                       sizeof(PressureRole) + 2 * sizeof(double) + 5 * sizeof(Vec<Dim>) +
                                        sizeof(Matrix<Dim>) + sizeof(PetscInt);
 
 bool moves(ParticleType type) { return type == ParticleType::fluid; }
@@ -156,9 +156,12 @@ void Simulation<Dim>::for_numbers(StepReport& report, double& window_begin, doub
 
 template <int Dim>
 void Simulation<Dim>::save(Checkpoint<Dim>& state) const {
-  state.particles = particles_;
-  state.particles.resize(particles_.owned);
-  state.searched_position = searched_position_;
+  state.particles.copy_owned(particles_);
+  state.searched_position.assign(state.particles.position.begin(), state.particles.position.end());
+  for (int i = 0; i < particles_.owned; ++i)
+    if (moves(particles_.type[static_cast<std::size_t>(i)]) ||
+        particles_.type[static_cast<std::size_t>(i)] == ParticleType::inlet)
+      state.searched_position[static_cast<std::size_t>(i)] = search_.searched_position(i);
   StepReport report = report_;
   double window_begin = window_begin_;
   double window_end = window_end_;
@@ -363,7 +366,6 @@ template <int Dim>
 void Simulation<Dim>::find_neighbours() {
   const LogStage log(stage(searching));
   search_.search(particles_, column_);
-  searched_position_.assign(particles_.position.begin(), particles_.position.begin() + particles_.owned);
 }
 
 template <int Dim>

@@ -64,6 +64,9 @@ class NeighbourSearch {
     for (int i = 0; i < near_.rows(); ++i) use(i, far_row(i));
   }
 
+  /// Where an owned particle, no wall particle on a mirror, stood at the last search [m].
+  Vec<Dim> searched_position(int i) const;
+
   /// Memory that the list and the search hold [bytes].
   std::size_t bytes() const;
 

@@ -2,6 +2,7 @@
 // The particles of one rank, as a structure of arrays: [owned | halo].
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "impinge/types.hpp"
@@ -37,6 +38,12 @@ struct Particles {
 
   /// Sets the length of every array; new entries are zero.
   void resize(int size);
+
+  /// Becomes a copy of the owned particles of another object.
+  void copy_owned(const Particles& other);
+
+  /// Puts the owned particles, none of them halo, into another order: entry k comes from order[k].
+  void reorder(std::span<const int> order);
 
   /// Appends an owned particle. Only while there is no halo.
   void append(const ParticleRecord<Dim>& record);

@@ -158,8 +158,7 @@ class Simulation {
   std::optional<TwoLevelPreconditioner<Dim>> two_level_;  // if the options chose no other preconditioner
   int partitions_seen_ = 0;                               // by two_level_
   Particles<Dim> particles_;
-  std::vector<Vec<Dim>> searched_position_;  // of the owned particles when the neighbours were searched
-  Checkpoint<Dim> step_start_;               // without owners and coarse matrix
+  Checkpoint<Dim> step_start_;  // without owners and coarse matrix
   StepReport report_;
   double window_begin_ = 0.0;
   double window_end_ = 0.0;

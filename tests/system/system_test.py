@@ -222,7 +222,7 @@ class Run(System):
 
     def test_divergence_is_exit_3_with_a_last_state_that_the_post_processing_opens(self):
         done = impinge(ROOT / "input/paper/jet60-A1.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=8e-4",
-                       "--set", "output.directory=out", cwd=self.directory, ranks=2)
+                       "--set", "time.max_speed=6", "--set", "output.directory=out", cwd=self.directory, ranks=2)
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         self.assertRegex(done.stderr, r"the run failed at step \d+, phase \w+: ")
         with h5py.File(self.snapshots()[-1]) as file:
