@@ -38,7 +38,7 @@ run() {
       --set "time.end=$(awk "BEGIN {print $steps * $dt}")" --set "output.directory=$directory/run-$steps" \
       -log_view ":$directory/petsc-$steps.txt" \
       >"$directory/log-$steps.txt"
-    rm "$directory/run-$steps"/*.vtkhdf
+    rm "$directory/run-$steps"/*.{vtkhdf,checkpoint}
   done
 }
 
