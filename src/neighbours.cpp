@@ -171,8 +171,8 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
       }
       std::array<const double*, Dim> position;
       for (std::size_t k = 0; k < Dim; ++k) position[k] = entry_position_[k].data();
-      used +=
-          pick_within<Dim>(position, entry_.data(), first, last, centre, above, radius2, &index_[used], &square_[used]);
+      used += pick_within<Dim>(position, entry_.data(), first, last, centre, above, radius2, index_.data() + used,
+                               square_.data() + used);
     }
   }
   return used;
@@ -206,7 +206,7 @@ void NeighbourSearch<Dim>::find_near(const Particles<Dim>& particles) {
         near_.weight.resize(2 * (used + count));
       }
       std::copy_n(index_.begin(), count, near_.index.begin() + static_cast<std::ptrdiff_t>(used));
-      weigh(near_radius_, count, &near_.weight[used]);
+      weigh(near_radius_, count, near_.weight.data() + used);
       used += count;
     }
     near_.start.push_back(static_cast<int>(used));

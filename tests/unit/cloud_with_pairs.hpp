@@ -46,7 +46,7 @@ struct Cloud {
 
   PairRow far_row(int i) const {
     const auto begin = static_cast<std::size_t>(far.begin(i)), count = static_cast<std::size_t>(far.end(i)) - begin;
-    return {{&far.index[begin], count}, {&far.weight[begin], count}};
+    return {{far.index.data() + begin, count}, {far.weight.data() + begin, count}};
   }
 
   int centre() const {
