@@ -146,6 +146,8 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
   const auto gap2 = [&](int axis, int layer) {
     return gap2_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(layer + reach_)];
   };
+  std::array<const double*, Dim> position;
+  for (std::size_t k = 0; k < Dim; ++k) position[k] = entry_position_[k].data();
   const int own_cell = box_cell_[static_cast<std::size_t>(i)];
   const int second_reach = Dim == 3 ? reach_ : 0;
   for (int a = -reach_; a <= reach_; ++a) {
@@ -169,8 +171,6 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
         square_.resize(2 * most);
         weight_.resize(2 * most);
       }
-      std::array<const double*, Dim> position;
-      for (std::size_t k = 0; k < Dim; ++k) position[k] = entry_position_[k].data();
       used += pick_within<Dim>(position, entry_.data(), first, last, centre, above, radius2, index_.data() + used,
                                square_.data() + used);
     }

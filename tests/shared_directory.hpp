@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "impinge/output_error.hpp"
 #include "impinge/parallel.hpp"
 
 namespace impinge {
@@ -30,5 +31,16 @@ class SharedDirectory : public testing::Test {
 
   std::string path_;
 };
+
+/// What an action's OutputError says; empty where there is none.
+template <class Action>
+std::string failure_of(Action action) {
+  try {
+    action();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 }  // namespace impinge

@@ -130,16 +130,6 @@ TEST_F(Restart, ContinuesWithAnyPreconditioner) {
   check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
 }
 
-template <class Action>
-std::string failure_of(Action action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
   const Config config = jet_case({});
   Simulation<2> simulation(MPI_COMM_WORLD, config);

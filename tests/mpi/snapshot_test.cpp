@@ -114,16 +114,6 @@ TEST_F(SharedDirectory, KeepsStatesThatAreNotNumbers) {
   for (int i = 0; i < particles.owned; ++i) EXPECT_TRUE(std::isnan(particles.velocity[static_cast<std::size_t>(i)][0]));
 }
 
-template <class Action>
-std::string failure_of(Action action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST_F(SharedDirectory, NamesTheFileThatCannotBeWritten) {
   const std::string file = path("missing/x_00000001.vtkhdf");
   const std::string failure =
