@@ -125,9 +125,15 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
        "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
        "1 - gamma weighs the divergence"},
-      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.5; paper: 0.0; 0.0 where gamma is given",
-       "speed C in largest fluid speeds at which density errors are corrected: gamma = (C u_max dt/dp)^2, at "
-       "most 1; 0: pressure.gamma"},
+      {IMPINGE_KEY(pressure.density_speed), every, "u_ref", from_to(0, 5), "0.5; paper: 0.0; 0.0 where gamma is given",
+       "speed C at which density errors are corrected: gamma = (C u_ref dt/dp)^2, at most 1, with u_ref the largest "
+       "fluid speed and at least sqrt(|g| dp); 0: pressure.gamma"},
+      {IMPINGE_KEY(pressure.packing),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "measure density errors by sum (1 - r/r_e)^3, which disorder leaves alone, instead of the number density"},
       {IMPINGE_KEY(pressure.corrected_divergence),
        every,
        "",
@@ -139,7 +145,7 @@ const std::vector<Key>& keys() {
        "",
        {},
        "true; paper: false",
-       "inside the fluid, a gradient of pressure differences corrected likewise; the paper's at the surface"},
+       "a gradient of pressure differences corrected likewise; at the surface particles the paper's"},
       {IMPINGE_KEY(pressure.tolerance), every, "", above_to(0, 1e-6), "",
        "relative residual at which the pressure equation counts as solved"},
       {IMPINGE_KEY(pressure.clamp_negative), every, "", {}, "", "set negative pressures to zero after the solve"},
@@ -165,8 +171,8 @@ const std::vector<Key>& keys() {
        "true; paper: false",
        "p = 0 half a spacing outside the surface particles instead of at them"},
 
-      {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "2.0; paper: 0.0",
-       "particles drift by this times the asymmetry F and the Courant number u_max dt/dp each step, at most by 0.1 dp, "
+      {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "1.0; paper: 0.0",
+       "particles drift by this times the asymmetry F and the Courant number u_ref dt/dp each step, at most by 0.1 dp, "
        "not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
@@ -688,10 +694,11 @@ void CaseReader::derive_scheme() {
   };
   derive("walls.model", config_.walls.model, WallModel::mirror);
   if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.5);
+  derive("pressure.packing", config_.pressure.packing, true);
   derive("pressure.corrected_divergence", config_.pressure.corrected_divergence, true);
   derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);
   derive("free_surface.zero_outside", config_.free_surface.zero_outside, true);
-  derive("shifting.coefficient", config_.shifting.coefficient, 2.0);
+  derive("shifting.coefficient", config_.shifting.coefficient, 1.0);
   derive("shifting.correct_velocity", config_.shifting.correct_velocity, true);
   derive("collision.distance", config_.collision.distance, 0.5);
 }

@@ -53,16 +53,20 @@ double surface_depth(const PairRow& far, std::span<const Vec<Dim>> position, std
                      std::span<const std::uint8_t> free_surface, double spacing, int i) {
   const auto self = static_cast<std::size_t>(i);
   if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
-  double depth = std::numeric_limits<double>::infinity();
+  double weights = 0.0;
+  double depths = 0.0;
   for (const int neighbour : far.index) {
     const auto j = static_cast<std::size_t>(neighbour);
     if (!free_surface[j]) continue;
     const double size = norm(asymmetry[j]);
     if (size == 0.0) continue;
-    const double above = dot(position[j] - position[self], asymmetry[j]) / (size * spacing);
-    depth = std::min(depth, above + SurfaceClosure<Dim>::least_depth);
+    const Vec<Dim> offset = 1.0 / spacing * (position[j] - position[self]);
+    const double weight = 1.0 / std::pow(dot(offset, offset), 3);
+    weights += weight;
+    depths += weight * (dot(offset, asymmetry[j]) / size + SurfaceClosure<Dim>::least_depth);
   }
-  return std::max(depth, SurfaceClosure<Dim>::least_depth);
+  if (weights == 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(depths / weights, SurfaceClosure<Dim>::least_depth);
 }
 
 template <int Dim>

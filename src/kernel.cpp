@@ -10,6 +10,7 @@ template <int Dim>
 LatticeSums lattice_sums(KernelType type, double effective_radius) {
   const int reach = static_cast<int>(std::ceil(effective_radius));
   double sum = 0.0;
+  double packing = 0.0;
   double second_moment = 0.0;
   int neighbours = 0;
   double half_space = 0.0;  // the surface's normal is the last axis; only neighbours on it or below count
@@ -19,6 +20,7 @@ LatticeSums lattice_sums(KernelType type, double effective_radius) {
     const double weight = with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
     ++neighbours;
     sum += weight;
+    packing += packing_weight(weight);
     second_moment += weight * r * r;
     if (offset[Dim - 1] < 0.0) half_space -= weight * offset[Dim - 1] / r;
   };
@@ -34,7 +36,7 @@ LatticeSums lattice_sums(KernelType type, double effective_radius) {
       }
     }
   }
-  return {sum, second_moment / sum, Dim * half_space / sum, neighbours};
+  return {sum, packing, second_moment / sum, Dim * half_space / sum, neighbours};
 }
 
 template LatticeSums lattice_sums<2>(KernelType, double);

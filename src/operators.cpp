@@ -37,6 +37,12 @@ void number_density(const PairList& near, std::span<double> density) {
   }
 }
 
+double packing(const PairList& near, int i) {
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t, double weight) { sum += packing_weight(weight); });
+  return sum;
+}
+
 template <int Dim>
 Vec<Dim> asymmetry(const PairList& near, std::span<const Vec<Dim>> position, double n0, int i) {
   const Vec<Dim> centre = position[static_cast<std::size_t>(i)];
@@ -94,14 +100,12 @@ double corrected_divergence(const PairList& near, std::span<const Vec<Dim>> posi
 
 template <int Dim>
 Vec<Dim> corrected_gradient(const PairList& near, std::span<const Vec<Dim>> position, std::span<const double> pressure,
-                            const Matrix<Dim>& correction, double n0, int i) {
-  const auto self = static_cast<std::size_t>(i);
-  const Vec<Dim> centre = position[self];
-  const double own = pressure[self];
+                            double base, const Matrix<Dim>& correction, double n0, int i) {
+  const Vec<Dim> centre = position[static_cast<std::size_t>(i)];
   Vec<Dim> sum;
   for_pairs(near, i, [&](std::size_t j, double weight) {
     const Vec<Dim> offset = position[j] - centre;
-    sum += (pressure[j] - own) * weight / dot(offset, offset) * offset;
+    sum += (pressure[j] - base) * weight / dot(offset, offset) * offset;
   });
   return Dim / n0 * (correction * sum);
 }
@@ -131,6 +135,12 @@ Vec<Dim> velocity_change_along(const PairList& near, std::span<const Vec<Dim>> p
   Vec<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
   for (int k = 0; k < Dim; ++k) change[k] = std::clamp(change[k], least[k], most[k]);
   return change;
+}
+
+double least_pressure(const PairList& near, std::span<const double> pressure, int i) {
+  double least = pressure[static_cast<std::size_t>(i)];
+  for_pairs(near, i, [&](std::size_t j, double) { least = std::min(least, pressure[j]); });
+  return least;
 }
 
 double weighted_mean(const PairList& near, std::span<const double> value, int i) {
@@ -197,7 +207,7 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
   template double corrected_divergence<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,     \
                                             std::span<const Vec<Dim>>, const Matrix<Dim>&, double, int);               \
   template Vec<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,       \
-                                            const Matrix<Dim>&, double, int);                                          \
+                                            double, const Matrix<Dim>&, double, int);                                  \
   template Vec<Dim> velocity_change_along<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,  \
                                                std::span<const ParticleType>, const Vec<Dim>&, double, int);           \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \

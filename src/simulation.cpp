@@ -233,6 +233,12 @@ void Simulation<Dim>::forget_pressure() {
   if (two_level_) two_level_->expire();
 }
 
+// u_max, but where gravity acts at least the speed of a fall from particle to particle: water at rest disorders, too.
+template <int Dim>
+double Simulation<Dim>::reference_speed() const {
+  return std::max(report_.max_speed, std::sqrt(norm(gravity_) * config_.particles.spacing));
+}
+
 template <int Dim>
 void Simulation<Dim>::choose_time_step() {
   const double largest = config_.time.cfl * config_.particles.spacing / report_.max_speed;  // infinite at rest
@@ -443,7 +449,7 @@ void Simulation<Dim>::find_sources() {
   const double n0 = near_sums_.number_density;
   const double rho = config_.fluid.density;
   const double dt = report_.dt;
-  const double speed = config_.pressure.density_speed * report_.max_speed;
+  const double speed = config_.pressure.density_speed * reference_speed();
   const double gamma = config_.pressure.density_speed > 0.0
                            ? std::min(1.0, std::pow(speed * dt / config_.particles.spacing, 2))
                            : config_.pressure.gamma;
@@ -459,9 +465,17 @@ void Simulation<Dim>::find_sources() {
                                                         wall_normal_, correction_[self], n0, i)
                             : divergence<Dim>(search_.near(), particles_.position, particles_.velocity, n0, i);
     // Ghosts and the free surface miss neighbours: their number density says nothing of crowding.
-    const double crowding = ghost || particles_.free_surface[self] ? 0.0 : (particles_.number_density[self] - n0) / n0;
+    const double crowding = ghost || particles_.free_surface[self] ? 0.0 : this->crowding(i);
     source_[unknown] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
   }
+}
+
+// Of the volume per particle: how much smaller it is than the full lattice's, relatively.
+template <int Dim>
+double Simulation<Dim>::crowding(int i) const {
+  return config_.pressure.packing
+             ? packing(search_.near(), i) / near_sums_.packing - 1.0
+             : particles_.number_density[static_cast<std::size_t>(i)] / near_sums_.number_density - 1.0;
 }
 
 // lap p = source.
@@ -545,13 +559,12 @@ void Simulation<Dim>::correct() {
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (!moves(particles_.type[self])) continue;
-    // Near the surface differences of pressure leave the forces of a pair unequal, and the surface breaks up.
-    const bool corrected = config_.pressure.corrected_gradient && !is_near_surface(i);
-    velocity_change_[self] =
-        -factor * (corrected ? corrected_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
-                                                       correction_[self], n0, i)
-                             : pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
-                                                      particles_.type, wall_normal_, n0, i));
+    const Vec<Dim> gradient = config_.pressure.corrected_gradient && !particles_.free_surface[self]
+                                  ? corrected_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
+                                                            base_pressure(i), correction_[self], n0, i)
+                                  : pressure_gradient<Dim>(search_.near(), particles_.position, particles_.pressure,
+                                                           particles_.type, wall_normal_, n0, i);
+    velocity_change_[self] = -factor * gradient;
   }
   displacement_.resize(static_cast<std::size_t>(particles_.owned));
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
@@ -560,22 +573,24 @@ void Simulation<Dim>::correct() {
   }
 }
 
+// Differences of pressure alone leave the forces of a pair unequal: beside the surface, whose particles have them
+// equal, that feeds its waves, so the pressures there push as well.
 template <int Dim>
-bool Simulation<Dim>::is_near_surface(int i) const {
+double Simulation<Dim>::base_pressure(int i) const {
   const PairList& near = search_.near();
-  if (particles_.free_surface[static_cast<std::size_t>(i)]) return true;
   for (int k = near.begin(i); k < near.end(i); ++k)
-    if (particles_.free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])]) return true;
-  return false;
+    if (particles_.free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])])
+      return least_pressure(near, particles_.pressure, i);
+  return particles_.pressure[static_cast<std::size_t>(i)];
 }
 
-// r = r* + dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C (u_max dt/dp) dp F, but not
+// r = r* + dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C u_ref dt F, but not
 // through the free surface, and take the velocity of their new place.
 template <int Dim>
 void Simulation<Dim>::shift() {
   const LogStage log(stage(correcting));
   const double largest = largest_shift * config_.particles.spacing;
-  const double scale = config_.shifting.coefficient * report_.max_speed * report_.dt;
+  const double scale = config_.shifting.coefficient * reference_speed() * report_.dt;
   const bool corrects = scale > 0.0 && config_.shifting.correct_velocity;
   if (corrects) domain_.refresh_directions(particles_.velocity, particles_.owned);
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});

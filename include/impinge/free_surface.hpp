@@ -30,8 +30,9 @@ class SurfaceClosure {
   std::vector<double> weight_;  // at least_depth, one step deeper, ...
 };
 
-/// Depth of particle i below the free surface [dp], at least least_depth: the smallest distance to the planes half a
-/// spacing [m] outside the surface particles of its row, their normals along the asymmetries; infinite without any.
+/// Depth of particle i below the free surface [dp], at least least_depth: its distance to the planes half a spacing [m]
+/// outside the surface particles of its row, their normals along the asymmetries; the mean with weights 1/r_ij^6, so
+/// that around a bend the nearest count; infinite without any.
 /// Reads positions, asymmetries and surface marks of owned particles and halo.
 template <int Dim>
 double surface_depth(const PairRow& far, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> asymmetry,

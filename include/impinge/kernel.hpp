@@ -26,9 +26,16 @@ decltype(auto) with_kernel(KernelType type, Use&& use) {
   return type == KernelType::singular ? use(SingularKernel{}) : use(NonSingularKernel{});
 }
 
+/// (W/(1 + W))^3 [-] of a pair's weight W: with both kernels proportional to (1 - r/r_e)^3.
+inline double packing_weight(double weight) {
+  const double reach = weight / (1.0 + weight);
+  return reach * reach * reach;
+}
+
 /// Sums over the neighbours of a particle on the full square or cubic lattice of spacing 1.
 struct LatticeSums {
   double number_density;     ///< n0 = sum W [-]
+  double packing;            ///< sum of packing_weight [-]
   double lambda;             ///< sum W r^2 / sum W [dp^2] (paper eq. 7)
   double surface_asymmetry;  ///< |F|0 = Dim/n0 |sum (r_i - r_j)/r_ij W| of a particle on a flat surface [-]
   int neighbours;            ///< lattice points within the radius

@@ -140,7 +140,9 @@ class Simulation {
   void weigh_images();
   void find_sources();
   void share_wall_pressure();
-  bool is_near_surface(int i) const;
+  double crowding(int i) const;
+  double base_pressure(int i) const;
+  double reference_speed() const;
   bool is_splash(std::size_t i) const;
 
   [[noreturn]] void fail(const char* phase, const std::string& reason) const;

@@ -101,9 +101,15 @@ std::vector<std::string> resolved_lines(const Config& config) {
   return lines;
 }
 
-const char* const scheme_keys[] = {
-    "pressure.density_speed",    "pressure.corrected_divergence", "pressure.corrected_gradient", "walls.model",
-    "free_surface.zero_outside", "shifting.coefficient",          "shifting.correct_velocity",   "collision.distance"};
+const char* const scheme_keys[] = {"pressure.density_speed",
+                                   "pressure.packing",
+                                   "pressure.corrected_divergence",
+                                   "pressure.corrected_gradient",
+                                   "walls.model",
+                                   "free_surface.zero_outside",
+                                   "shifting.coefficient",
+                                   "shifting.correct_velocity",
+                                   "collision.distance"};
 
 std::string scheme_value(const std::string& scheme, const std::string& key) {
   for (const std::string& line : resolved_lines(parse("scheme = \"" + scheme + "\"")))
@@ -115,10 +121,11 @@ TEST(Config, TheSchemeSetsDefaults) {
   const auto check = [](const Config& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
     EXPECT_EQ(c.pressure.density_speed, consistent ? 0.5 : 0.0);
+    EXPECT_EQ(c.pressure.packing, consistent);
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
     EXPECT_EQ(c.free_surface.zero_outside, consistent);
-    EXPECT_EQ(c.shifting.coefficient, consistent ? 2.0 : 0.0);
+    EXPECT_EQ(c.shifting.coefficient, consistent ? 1.0 : 0.0);
     EXPECT_EQ(c.shifting.correct_velocity, consistent);
     EXPECT_EQ(c.collision.distance, consistent ? 0.5 : 0.8);
   };
@@ -189,12 +196,12 @@ TEST(Config, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"columns\", "
                   "\"particles\""});
   EXPECT_EQ(mistakes_in("pressure.density_speed = 5.1"),
-            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_max)"});
+            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_ref)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
             Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
   EXPECT_EQ(mistakes_in("collision.distance = 1.1"),
             Texts{"case.toml:1: collision.distance = 1.1: out of range; allowed: [0, 1] (dp)"});
-  for (const std::string key : {"pressure.corrected_divergence", "pressure.corrected_gradient",
+  for (const std::string key : {"pressure.packing", "pressure.corrected_divergence", "pressure.corrected_gradient",
                                 "free_surface.zero_outside", "shifting.correct_velocity"})
     EXPECT_EQ(mistakes_in(key + " = 1"), Texts{"case.toml:1: " + key + " = 1: not a boolean; allowed: true, false"});
 }

@@ -115,17 +115,28 @@ TYPED_TEST(FreeSurface, DepthIsThatBelowAFlatSurface) {
   EXPECT_EQ(this->depth_of(this->at_depth(1.5)), std::numeric_limits<double>::infinity());
 }
 
-TYPED_TEST(FreeSurface, DepthIsThatBelowTheNearestPlane) {
+TYPED_TEST(FreeSurface, DepthIsTheMeanBelowThePlanesOfWhichTheNearestCount) {
   const auto top = static_cast<std::size_t>(this->at_depth(0.5));
   const int below = this->at_depth(2.5);
-  this->asymmetry_[top] *= 5.0;  // only the direction counts
+  const auto turn = [&](const Vec<TestFixture::Dim>& normal) { this->asymmetry_[top] = normal; };
+  Vec<TestFixture::Dim> up, across;
+  up[TestFixture::Dim - 1] = 5.0;  // only the direction counts
+  across[0] = 1.0;
+  turn(up);
   EXPECT_NEAR(this->depth_of(below), 2.5, 1e-12);
-  this->asymmetry_[top][0] += std::sqrt(3.0) * norm(this->asymmetry_[top]);  // 60 degrees from the vertical
-  EXPECT_NEAR(this->depth_of(below), 1.5, 1e-12);
-  this->asymmetry_[top] *= -1.0;  // far outside
-  EXPECT_EQ(this->depth_of(below), 0.5);
-  this->asymmetry_[top] *= 0.0;  // none
+  turn(across);  // a depth of 0.5 with the weight of the nearest, 2^-6
+  double others = 0.0;
+  for (const int j : this->lattice_.far_row(below).index) {
+    if (!this->marked_[static_cast<std::size_t>(j)] || j == static_cast<int>(top)) continue;
+    others +=
+        std::pow(this->lattice_.distance(j, this->lattice_.particles.position[static_cast<std::size_t>(below)]), -6);
+  }
+  const double nearest = std::pow(2.0, -6);
+  EXPECT_NEAR(this->depth_of(below), (0.5 * nearest + 2.5 * others) / (nearest + others), 1e-12);
+  turn({});  // none
   EXPECT_NEAR(this->depth_of(below), 2.5, 1e-12);
+  turn(-1.0 * up);
+  EXPECT_EQ(this->depth_of(this->at_depth(1.5)), 0.5);  // at least
 }
 
 TYPED_TEST(FreeSurface, NormalIsTheUnitVectorOutOfTheFluid) {

@@ -51,6 +51,23 @@ TYPED_TEST(Operators, NumberDensityIsThatOfTheFullLattice) {
   }
 }
 
+TYPED_TEST(Operators, PackingIsTheSumOfCubesWithEitherKernel) {
+  constexpr int Dim = TypeParam::value;
+  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+    const Cloud<Dim> lattice(0.0, kernel);
+    EXPECT_NEAR(packing(lattice.near, lattice.centre()), lattice.sums.packing, 1e-12);
+    const auto cubes = [](const Cloud<Dim>& cloud) {
+      const Vec<Dim> centre = cloud.particles.position[static_cast<std::size_t>(cloud.centre())];
+      double sum = 0.0;
+      for (int j = 0; j < cloud.particles.owned; ++j)
+        if (j != cloud.centre()) sum += std::pow(std::max(1.0 - cloud.distance(j, centre) / near_radius, 0.0), 3);
+      return sum;
+    };
+    const Cloud<Dim> cloud(0.2, kernel);
+    EXPECT_NEAR(packing(cloud.near, cloud.centre()) / lattice.sums.packing, cubes(cloud) / cubes(lattice), 1e-12);
+  }
+}
+
 TYPED_TEST(Operators, AsymmetryIsThatOfAFlatSurface) {
   constexpr int Dim = TypeParam::value;
   const Cloud<Dim> lattice(0.0);
@@ -84,10 +101,32 @@ TYPED_TEST(Operators, CorrectedOnesAreExactOnLinearFieldsOfAnyCloud) {
       const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
       EXPECT_NEAR(corrected_divergence<Dim>(cloud.near, p.position, p.velocity, no_wall, correction, n0, i), trace<Dim>,
                   1e-10);
-      expect_gradient_of_linear_pressure(corrected_gradient<Dim>(cloud.near, p.position, p.pressure, correction, n0, i),
-                                         1e-10);
+      const double own = p.pressure[static_cast<std::size_t>(i)];
+      expect_gradient_of_linear_pressure(
+          corrected_gradient<Dim>(cloud.near, p.position, p.pressure, own, correction, n0, i), 1e-10);
     }
   }
+}
+
+TYPED_TEST(Operators, CorrectedGradientPushesFromACrowdWhereItsBaseIsLow) {
+  constexpr int Dim = TypeParam::value;
+  Cloud<Dim> cloud(0.2);
+  Particles<Dim>& p = cloud.particles;
+  std::fill(p.pressure.begin(), p.pressure.end(), 3.0);
+  const int i = cloud.centre();
+  const double n0 = cloud.sums.number_density;
+  const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
+  const Vec<Dim> even = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 3.0, correction, n0, i);
+  const Vec<Dim> push = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 1.0, correction, n0, i);
+  EXPECT_EQ(even, Vec<Dim>{});
+  Vec<Dim> crowd;
+  for (int k = cloud.near.begin(i); k < cloud.near.end(i); ++k) {
+    const auto pair = static_cast<std::size_t>(k);
+    const Vec<Dim> offset =
+        p.position[static_cast<std::size_t>(cloud.near.index[pair])] - p.position[static_cast<std::size_t>(i)];
+    crowd += 2.0 * Dim / n0 * cloud.near.weight[pair] / dot(offset, offset) * offset;
+  }
+  EXPECT_NEAR(norm(push - correction * crowd), 0.0, 1e-12);
 }
 
 TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFieldsAndKnowsNoWalls) {
@@ -256,6 +295,16 @@ TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
   }
 }
 
+TEST(LeastPressure, IsThatOfAParticleAndItsNeighbours) {
+  PairList pairs;
+  pairs.start = {0, 2, 2};
+  pairs.index = {1, 2};
+  pairs.weight = {1.0, 3.0};
+  EXPECT_EQ(least_pressure(pairs, std::vector{3.0, 2.0, 6.0, 0.0}, 0), 2.0);
+  EXPECT_EQ(least_pressure(pairs, std::vector{1.0, 2.0, 6.0, 0.0}, 0), 1.0);
+  EXPECT_EQ(least_pressure(pairs, std::vector{1.0, 2.0, 6.0, 0.0}, 1), 2.0);
+}
+
 TEST(Mean, IsWeighted) {
   PairList pairs;
   pairs.start = {0, 2, 2};
@@ -367,7 +416,7 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   EXPECT_EQ(corrected_divergence<Dim>(none, single.position, single.velocity, single.no_wall(), Matrix<Dim>::identity(),
                                       4.0, 0),
             0.0);
-  EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, Matrix<Dim>::identity(), 4.0, 0),
+  EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, 1.0, Matrix<Dim>::identity(), 4.0, 0),
             Vec<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);
   EXPECT_EQ(velocity_laplacian<Dim>(PairRow{}, single.velocity, 4.0, 0), Vec<Dim>{});
