@@ -58,6 +58,14 @@ void Exchange::forward_bytes(const void* send, void* receive, int item_bytes) co
   MPI_Type_free(&item);
 }
 
+void Exchange::begin_forward(const double* send, double* receive) const {
+  if (forest_ != nullptr) check(PetscSFBcastBegin(forest_, MPI_DOUBLE, send, receive, MPI_REPLACE));
+}
+
+void Exchange::end_forward(const double* send, double* receive) const {
+  if (forest_ != nullptr) check(PetscSFBcastEnd(forest_, MPI_DOUBLE, send, receive, MPI_REPLACE));
+}
+
 double sum_over_ranks(MPI_Comm comm, double value) {
   MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm);
   return value;

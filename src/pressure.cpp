@@ -33,44 +33,20 @@ std::size_t place_of(const std::vector<PetscInt>& labels, PetscInt label) {
   return static_cast<std::size_t>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
 }
 
-// Spreads a mark from particle to particle until nothing changes on any rank. improve(i) updates particle i from its
-// neighbours and says whether it changed. Sweeps go forth and back along the sorted particles, so few are needed.
-template <class T, class Improve>
-void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Improve&& improve) {
+// Spreads a mark from particle to particle until nothing changes on any rank. sweep() updates the marks of owned
+// particles as far as it gets on its own, and says whether it changed any.
+template <class T, class Sweep>
+void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Sweep&& sweep) {
   bool changed_anywhere = true;
   while (changed_anywhere) {
     halo.refresh(mark, owned);
-    bool changed = false;
-    bool again = true;
-    while (again) {
-      again = false;
-      for (int i = 0; i < owned; ++i) again |= improve(i);
-      for (int i = owned - 1; i >= 0; --i) again |= improve(i);
-      changed |= again;
-    }
-    changed_anywhere = any_rank(comm, changed);
+    changed_anywhere = any_rank(comm, sweep());
   }
 }
 
 constexpr double crowding = 1.3;  // most pairs of the particles on average, over those of the full lattice
 
 }  // namespace
-
-void MatrixRows::Block::clear(std::size_t rows, std::size_t entries) {
-  start.clear();
-  start.reserve(rows + 1);
-  start.push_back(0);
-  if (column.size() >= entries) return;
-  column = Buffer<PetscInt>(2 * entries);  // room that nobody writes costs nothing
-  value = Buffer<double>(2 * entries);
-}
-
-void MatrixRows::Block::make_room(std::size_t more) {
-  const std::size_t needed = static_cast<std::size_t>(start.back()) + more;
-  if (needed <= column.size()) return;
-  column.resize(2 * needed);
-  value.resize(2 * needed);
-}
 
 PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), tolerance_(tolerance) {
   check(PCRegister(two_level, [](PC preconditioner) { return PCSetType(preconditioner, PCSHELL); }));
@@ -117,15 +93,14 @@ void PressureSolver::set_default_option(const char* name, const char* value) {
 
 void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo) {
   create_solver();  // KSPReset would leave a multigrid's levels with the sizes of the last step
-  matrix_.reset();
+  whole_matrix_.reset();
   const std::size_t owned = equation.source.size();
   const auto own_rows = static_cast<PetscInt>(owned);
   first_row_ = 0;
   MPI_Exscan(&own_rows, &first_row_, 1, MPIU_INT, MPI_SUM, comm_);
-  const double usual_entries = crowding * static_cast<double>(owned) * (equation.usual_pairs + 1);
+  const double usual_entries = crowding * static_cast<double>(owned) * (0.5 * equation.usual_pairs + 1.0);
   rows_.own.clear(owned, static_cast<std::size_t>(usual_entries));
   rows_.others.clear(owned, 0);
-  rows_.other_particle.clear();
   rows_.diagonal.assign(owned, equation.n0);
   rows_.coupling.assign(owned, 0.0);
   right_hand_side_.assign(owned, 0.0);
@@ -134,17 +109,8 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   find_pockets(equation, halo);
   close_pockets(equation);
 
-  // The matrix uses the arrays as they are, without a copy.
-  if (ranks_of(comm_) == 1) {
-    check(MatCreateSeqAIJWithArrays(comm_, own_rows, own_rows, rows_.own.start.data(), rows_.own.column.data(),
-                                    rows_.own.value.data(), matrix_.address()));
-  } else {
-    check(MatCreateMPIAIJWithSplitArrays(comm_, own_rows, own_rows, PETSC_DETERMINE, PETSC_DETERMINE,
-                                         rows_.own.start.data(), rows_.own.column.data(), rows_.own.value.data(),
-                                         rows_.others.start.data(), rows_.others.column.data(),
-                                         rows_.others.value.data(), matrix_.address()));
-  }
-  check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  matrix_.build(comm_, rows_, halo);
+  if (!is_two_level_) whole_matrix_ = matrix_.whole_matrix(equation.row);
 }
 
 void PressureSolver::append_row(const PressureEquation& equation, int i, const PairRow& pairs) {
@@ -166,18 +132,17 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
     double sum = 0.0;
     double zeros = 0.0;  // of the sum
     double excess = 0.0;
-    std::size_t own_place = used;
+    ++used;  // the diagonal
     for (std::size_t k = 0; k < pairs.index.size(); ++k) {
       const int j = pairs.index[k];
       const double weight = pairs.weight[k];
       const PressureRole role = equation.role[static_cast<std::size_t>(j)];
       if (j < owned) {
-        if (j == i) own_place = used;
         sum += role == PressureRole::excluded ? 0.0 : weight;
         zeros += role == PressureRole::zero ? weight : 0.0;
         column[used] = j;
         value[used] = -weight;
-        used += role == PressureRole::unknown ? 1 : 0;
+        used += role == PressureRole::unknown && j > i ? 1 : 0;
       } else if (role != PressureRole::excluded) {
         if (!equation.excess.empty()) excess += weight * equation.excess[static_cast<std::size_t>(j - owned)];
         const PetscInt row = equation.row[static_cast<std::size_t>(j)];
@@ -187,10 +152,10 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
           zeros += weight;
           continue;
         }
-        if (row >= first_row_ && row < first_row_ + owned) {
+        if (row < first_row_ || row >= first_row_ + owned) {
+          others_.push_back({row, j - owned, -weight});
+        } else if (row > equation.row[self]) {
           images_.emplace_back(row - first_row_, -weight);
-        } else {
-          others_.push_back({row, j, -weight});
         }
       }
     }
@@ -200,7 +165,8 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
     }
     if (sum > 0.0) rows_.coupling[self] = (sum - zeros) / sum;
     if (sum == 0.0) sum = equation.n0;
-    value[own_place] = sum;
+    column[row_begin] = i;
+    value[row_begin] = sum;
     rows_.diagonal[self] = sum;
     right_hand_side_[self] = excess - equation.source[self] / equation.factor;
     anchored_[self] = zeros > 0.0;
@@ -232,12 +198,21 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
     if (std::exchange(last, entry.row) == entry.row) {
       others.value[end - 1] += entry.value;
     } else {
-      others.column[end] = entry.row;
+      others.column[end] = entry.particle;
       others.value[end++] = entry.value;
-      rows_.other_particle.push_back(entry.particle);
     }
   }
   others.start.push_back(static_cast<PetscInt>(end));
+}
+
+// True if test(j) is, for any of the neighbours in a row: particles after i and halo.
+template <class Test>
+bool PressureSolver::any_later(std::size_t i, Test&& test) const {
+  const auto in = [&](const MatrixRows::Block& block, std::size_t first) {
+    const auto begin = block.column.begin() + block.start[i], end = block.column.begin() + block.start[i + 1];
+    return std::any_of(begin, end, [&](PetscInt column) { return test(first + static_cast<std::size_t>(column)); });
+  };
+  return in(rows_.own, 0) || in(rows_.others, rows_.diagonal.size());
 }
 
 // Pins one particle of each pocket and frees its source of the mean, or no pressure field could answer it.
@@ -251,10 +226,7 @@ void PressureSolver::close_pockets(const PressureEquation& equation) {
     sums[2 * place + 1] += 1.0;
     if (pocket_[i] != equation.row[i]) continue;
     rows_.diagonal[i] += equation.n0;
-    const auto columns = rows_.own.column.begin();
-    const auto at =
-        std::lower_bound(columns + rows_.own.start[i], columns + rows_.own.start[i + 1], static_cast<PetscInt>(i));
-    rows_.own.value[static_cast<std::size_t>(at - columns)] = rows_.diagonal[i];
+    rows_.own.value[static_cast<std::size_t>(rows_.own.start[i])] = rows_.diagonal[i];
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, comm_);
   for (std::size_t i = 0; i < pocket_.size(); ++i) {
@@ -264,42 +236,65 @@ void PressureSolver::close_pockets(const PressureEquation& equation) {
   }
 }
 
+// Most hear of p = 0 from a later particle, all but a few of the rest from no one: only if some are left over do those
+// that know tell the later ones.
+bool PressureSolver::spread_anchors(std::span<const PressureRole> role) {
+  const std::size_t owned = rows_.diagonal.size();
+  bool changed = false;
+  while (true) {
+    bool left_over = false;
+    for (std::size_t i = owned; i-- > 0;) {
+      if (anchored_[i] || role[i] != PressureRole::unknown) continue;
+      anchored_[i] = any_later(i, [&](std::size_t j) { return anchored_[j] != 0; });
+      (anchored_[i] ? changed : left_over) = true;
+    }
+    if (!left_over) return changed;
+    bool told = false;
+    for (std::size_t i = 0; i < owned; ++i) {
+      if (anchored_[i] != 1 || role[i] != PressureRole::unknown) continue;
+      anchored_[i] = 2;
+      any_later(i, [&](std::size_t j) {
+        if (j < owned && !anchored_[j]) anchored_[j] = told = true;
+        return false;
+      });
+    }
+    if (!told) return changed;
+    changed = true;
+  }
+}
+
 void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& halo) {
   const int owned = static_cast<int>(equation.source.size());
-  const auto any_neighbour = [&](int i, auto&& test) {
-    const auto self = static_cast<std::size_t>(i);
-    for (PetscInt k = rows_.own.start[self]; k < rows_.own.start[self + 1]; ++k)
-      if (test(static_cast<std::size_t>(rows_.own.column[static_cast<std::size_t>(k)]))) return true;
-    for (PetscInt k = rows_.others.start[self]; k < rows_.others.start[self + 1]; ++k)
-      if (test(static_cast<std::size_t>(rows_.other_particle[static_cast<std::size_t>(k)]))) return true;
-    return false;
-  };
   pockets_.clear();
   pocket_.assign(static_cast<std::size_t>(owned), -1);
 
-  spread(comm_, halo, anchored_, owned, [&](int i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (anchored_[self] || equation.role[self] != PressureRole::unknown) return false;
-    anchored_[self] = any_neighbour(i, [&](std::size_t j) { return anchored_[j] != 0; });
-    return anchored_[self] != 0;
-  });
+  spread(comm_, halo, anchored_, owned, [&] { return spread_anchors(equation.role); });
   const auto in_pocket = [&](std::size_t i) { return equation.role[i] == PressureRole::unknown && !anchored_[i]; };
   bool found = false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) found |= in_pocket(i);
   if (!any_rank(comm_, found)) return;
 
-  // A pocket's label is its smallest row.
+  // A pocket's label is its smallest row. Sweeps go forth and back along the sorted particles, so few are needed.
   halo.refresh(anchored_, owned);
   std::vector<PetscInt> label(equation.row.begin(), equation.row.end());
-  spread(comm_, halo, label, owned, [&](int i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (!in_pocket(self)) return false;
-    PetscInt smallest = label[self];
-    any_neighbour(i, [&](std::size_t j) {
-      if (in_pocket(j)) smallest = std::min(smallest, label[j]);
-      return false;
-    });
-    return std::exchange(label[self], smallest) != smallest;
+  spread(comm_, halo, label, owned, [&] {
+    bool changed = false, again = true;
+    const auto level = [&](std::size_t i) {
+      if (!in_pocket(i)) return;
+      any_later(i, [&](std::size_t j) {
+        if (!in_pocket(j) || label[j] == label[i]) return false;
+        again = true;
+        label[i] = label[j] = std::min(label[i], label[j]);
+        return false;
+      });
+    };
+    while (again) {
+      again = false;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) level(i);
+      for (std::size_t i = static_cast<std::size_t>(owned); i-- > 0;) level(i);
+      changed |= again;
+    }
+    return changed;
   });
   std::vector<PetscInt> own_labels;
   for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) {
@@ -334,7 +329,7 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
   // The multiple of the guess that is nearest to the solution in the norm of the matrix; the solver finds the rest.
   const std::array<::Vec, 2> others{residual, b};
   std::array<double, 2> products{};  // x.Ax, x.b
-  check(MatMult(matrix_, x, residual));
+  check(MatMult(matrix(), x, residual));
   check(VecMDot(x, 2, others.data(), products.data()));
   const double scale = products[0] > 0.0 ? products[1] / products[0] : 0.0;
   check(VecScale(x, scale));
@@ -343,7 +338,7 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
   double relative = 0.0, absolute = 0.0;
   check(KSPGetTolerances(solver_, &relative, &absolute, nullptr, nullptr));
   check(KSPSetTolerances(solver_, 0.0, std::max(absolute, relative * b_norm), PETSC_DEFAULT, PETSC_DEFAULT));
-  check(KSPSetOperators(solver_, matrix_, matrix_));
+  check(KSPSetOperators(solver_, matrix(), matrix()));
   check(KSPSolve(solver_, residual, change));
   check(VecAXPY(x, 1.0, change));
 
@@ -351,7 +346,7 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
   PetscInt iterations = 0;
   check(KSPGetConvergedReason(solver_, &reason));
   check(KSPGetIterationNumber(solver_, &iterations));
-  check(MatMult(matrix_, x, residual));
+  check(MatMult(matrix(), x, residual));
   check(VecAXPY(residual, -1.0, b));
   check(VecNorm(residual, NORM_2, &report.residual));
   report.residual /= b_norm;
@@ -375,13 +370,8 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
 }
 
 std::size_t PressureSolver::bytes() const {
-  std::size_t sum = (right_hand_side_.capacity() + rows_.diagonal.capacity()) * sizeof(double) +
-                    pocket_.capacity() * sizeof(PetscInt) + rows_.other_particle.capacity() * sizeof(int);
-  for (const MatrixRows::Block* block : {&rows_.own, &rows_.others})
-    if (!block->start.empty())
-      sum += block->start.capacity() * sizeof(PetscInt) +
-             static_cast<std::size_t>(block->start.back()) * (sizeof(PetscInt) + sizeof(double));
-  return sum;
+  return (right_hand_side_.capacity() + rows_.diagonal.capacity()) * sizeof(double) +
+         pocket_.capacity() * sizeof(PetscInt) + rows_.own.bytes() + rows_.others.bytes();
 }
 
 }  // namespace impinge

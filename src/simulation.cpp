@@ -674,7 +674,7 @@ UnitCosts Simulation<Dim>::unit_costs(const Config& config) {
   if (config.free_surface.zero_outside || config.shifting.coefficient > 0.0) traffic += sizeof(Vec<Dim>) + 1.0;
   if (config.shifting.coefficient > 0.0 && config.shifting.correct_velocity) traffic += sizeof(Vec<Dim>);
   return {.particle_memory = particle_bytes<Dim> + 2.0 * sizeof(int) + sizeof(Vec<Dim>),  // with the cells' order
-          .row_memory = near * pair + far * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
+          .row_memory = near * pair + (0.5 * far + 1.0) * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
           .cell_memory = 3.0 * sizeof(int),
           .halo_traffic = traffic};
 }

@@ -203,8 +203,9 @@ void TwoLevelPreconditioner<Dim>::number_nodes() {
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
                                                       std::span<const Vec<Dim>> position, const Halo& halo) {
-  // Row by row: (A P)_i on the 3^Dim cubes of nodes around the neighbours of i, then on the 4^Dim nodes themselves;
-  // patch by patch P^T (A P) on the same nodes; then on the 5^Dim around each node.
+  // A = B + B^T, with half the entries in B: the upper triangle and half of the diagonal and of other ranks' columns.
+  // Row by row: (B P)_i on the 3^Dim cubes of nodes around the neighbours of i, then on the 4^Dim nodes themselves;
+  // patch by patch P^T (B P) on the same nodes; then on the 5^Dim around each node.
   constexpr std::size_t n_cubes = power(3, Dim);
   constexpr std::size_t near_size = power(4, Dim);
   constexpr std::size_t stencil_size = power(5, Dim);
@@ -254,12 +255,13 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
         Corners& cube = cubes[static_cast<std::size_t>(place_in_cube<Dim>(3, offset))];
         for (std::size_t c = 0; c < corners; ++c) cube[c] += entry * weight[j][c];
       };
-      for (auto k = static_cast<std::size_t>(matrix.own.start[i]);
+      add(i, 0.5 * matrix.diagonal[i]);
+      for (auto k = static_cast<std::size_t>(matrix.own.start[i]) + 1;
            k < static_cast<std::size_t>(matrix.own.start[i + 1]); ++k)
         add(static_cast<std::size_t>(matrix.own.column[k]), matrix.own.value[k]);
       for (auto k = static_cast<std::size_t>(matrix.others.start[i]);
            k < static_cast<std::size_t>(matrix.others.start[i + 1]); ++k)
-        add(static_cast<std::size_t>(matrix.other_particle[k]), matrix.others.value[k]);
+        add(coupling_.size() + static_cast<std::size_t>(matrix.others.column[k]), 0.5 * matrix.others.value[k]);
       row.fill(0.0);
       for (std::size_t cube = 0; cube < n_cubes; ++cube)
         for (std::size_t c = 0; c < corners; ++c) row[node_of_cube[cube][c]] += cubes[cube][c];
@@ -272,13 +274,15 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     }
   }
 
-  // Sums at the roots, in an order that does not change from run to run.
+  // Sums at the roots, in an order that does not change from run to run, and back to all that need the transpose.
   std::vector<double> sums(owned_cells_ * stencil_size, 0.0);
   MPI_Datatype whole_stencil;
   MPI_Type_contiguous(stencil_size, MPI_DOUBLE, &whole_stencil);
   MPI_Type_commit(&whole_stencil);
   check(PetscSFReduceBegin(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
   check(PetscSFReduceEnd(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  check(PetscSFBcastBegin(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
+  check(PetscSFBcastEnd(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
   MPI_Type_free(&whole_stencil);
 
   create_coarse_matrix();
@@ -289,14 +293,17 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     const auto centre = cells_.coordinates(cell_of_node_[node]);
     columns.clear();
     values.clear();
-    sums[root * stencil_size + stencil_size / 2] *= 1.0 + regularisation;
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
-      const double value = sums[root * stencil_size + static_cast<std::size_t>(k)];
-      if (value == 0.0) return;
-      const int other = local_node(sum<Dim>(centre, offset));
-      if (other < 0 || number_[static_cast<std::size_t>(other)] < 0) return;
-      columns.push_back(number_[static_cast<std::size_t>(other)]);
-      values.push_back(value);
+      Image<Dim> image;
+      const int cell = cells_.wrapped_cell(sum<Dim>(centre, offset), image);
+      if (cell < 0 || image.reflects() || node_of_cell_[static_cast<std::size_t>(cell)] < 0) return;
+      const auto other = static_cast<std::size_t>(node_of_cell_[static_cast<std::size_t>(cell)]);
+      const auto there = static_cast<std::size_t>(k);
+      const double value =
+          stencil[node * stencil_size + there] + stencil[other * stencil_size + stencil_size - 1 - there];
+      if (value == 0.0 || number_[other] < 0) return;
+      columns.push_back(number_[other]);
+      values.push_back(there == stencil_size / 2 ? (1.0 + regularisation) * value : value);
     });
     check(MatSetValues(coarse_matrix_, 1, &number_[node], static_cast<PetscInt>(columns.size()), columns.data(),
                        values.data(), ADD_VALUES));

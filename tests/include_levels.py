@@ -13,7 +13,7 @@ LEVELS = [
     ["parallel"],
     ["analytic_jet", "particles"],
     ["checkpoint", "config"],
-    ["cell_grid", "partition"],
+    ["cell_grid", "partition", "pressure_matrix"],
     ["domain", "geometry", "jet_geometry", "neighbours"],
     ["free_surface", "operators", "pressure", "snapshot"],
     ["two_level"],

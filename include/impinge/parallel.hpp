@@ -36,6 +36,10 @@ class Exchange {
     forward_bytes(send, receive, static_cast<int>(sizeof(T)));
   }
 
+  /// The two halves of forward, for work in between; neither array is touched there. Collective.
+  void begin_forward(const double* send, double* receive) const;
+  void end_forward(const double* send, double* receive) const;
+
  private:
   void forward_bytes(const void* send, void* receive, int item_bytes) const;
 

@@ -10,6 +10,7 @@
 #include "impinge/neighbours.hpp"
 #include "impinge/parallel.hpp"
 #include "impinge/petsc.hpp"
+#include "impinge/pressure_matrix.hpp"
 
 namespace impinge {
 
@@ -38,25 +39,6 @@ struct PressureEquation {
   std::span<const double> excess{};
 };
 
-/// The matrix on this rank, by particles.
-struct MatrixRows {
-  struct Block {
-    std::vector<PetscInt> start;
-    Buffer<PetscInt> column;
-    Buffer<double> value;  // may be longer than start.back(), as may be the columns
-
-    void clear(std::size_t rows, std::size_t entries);  // and makes room for so many
-    void make_room(std::size_t more);                   // behind the rows so far
-  };
-  Block own;                        ///< columns: owned particles, ascending
-  Block others;                     ///< columns of other ranks
-  std::vector<int> other_particle;  ///< halo particle of each entry of `others`
-  std::vector<double> diagonal;
-  /// What a row has of the constants: sum of its entries but for the diagonal, over -A_ii; 1 where no p = 0 is near, 0
-  /// without an unknown.
-  std::vector<double> coupling;
-};
-
 struct PressureReport {
   int iterations = 0;
   double residual = 0.0;  ///< |b - A p| / |b|, unpreconditioned; 0 where b = 0
@@ -67,7 +49,8 @@ struct PressureReport {
 /// Builds the matrix of each step and solves it with a KSP of options prefix `ppe_`. The system is divided by -factor:
 /// A_ij = -W_ij, A_ii = sum_j W_ij over unknown and p = 0 neighbours, and the surface's weight, b_i = -source_i/factor;
 /// rows without an unknown are n0 p_i = 0. Symmetric, and positive definite: in a cluster that touches no p = 0
-/// particle the source's mean is removed, one particle is pinned, and the pressure's lowest value is set to 0.
+/// particle the source's mean is removed, one particle is pinned, and the pressure's lowest value is set to 0. Half of
+/// the matrix is stored, which serves products and the two-level preconditioner; others get an AIJ matrix.
 class PressureSolver {
  public:
   /// The default preconditioner, a shell that the owner of this object fills before each solve.
@@ -93,9 +76,11 @@ class PressureSolver {
   /// The options that this class set as defaults; the rest of the database is the user's.
   const std::vector<std::string>& default_options() const { return default_options_; }
 
-  /// The matrix of the last assemble.
-  Mat matrix() const { return matrix_; }
+  /// The matrix of the last assemble: what the solver multiplies with, its rows, and all its entries, built at each
+  /// call with the equation's `row`. The last is collective.
+  Mat matrix() const { return whole_matrix_ == nullptr ? matrix_.product_matrix() : Mat(whole_matrix_); }
   const MatrixRows& rows() const { return rows_; }
+  PetscMatrix whole_matrix(std::span<const PetscInt> row) const { return matrix_.whole_matrix(row); }
 
   /// Memory of the matrix and the vectors [bytes].
   std::size_t bytes() const;
@@ -104,6 +89,9 @@ class PressureSolver {
   void create_solver();
   void set_default_option(const char* name, const char* value);
   void append_row(const PressureEquation& equation, int i, const PairRow& pairs);
+  template <class Test>
+  bool any_later(std::size_t i, Test&& test) const;
+  bool spread_anchors(std::span<const PressureRole> role);
   void find_pockets(const PressureEquation& equation, const Halo& halo);
   void close_pockets(const PressureEquation& equation);
 
@@ -120,10 +108,11 @@ class PressureSolver {
   std::vector<std::pair<PetscInt, double>> images_;  // of a row: entries from images of owned particles
   std::vector<OtherEntry> others_;                   // of a row
   MatrixRows rows_;
-  PetscMatrix matrix_;  // uses the arrays of rows_
+  PressureMatrix matrix_;     // uses the arrays of rows_
+  PetscMatrix whole_matrix_;  // but for the two-level preconditioner
   std::vector<double> right_hand_side_;
   PetscInt first_row_ = 0;
-  std::vector<std::uint8_t> anchored_;  // p = 0 is reached over unknowns; owned and halo
+  std::vector<std::uint8_t> anchored_;  // p = 0 is reached over unknowns, 2: and its neighbours know; owned and halo
 
   // Pockets: label per owned particle (smallest global row of its pocket, -1 elsewhere) and the labels of all.
   std::vector<PetscInt> pocket_;

@@ -136,7 +136,7 @@ void add_loops(Block<Dim>& block) {
           pressure_gradient<Dim>(block.search.near(), block.particles.position, block.particles.pressure,
                                  block.particles.type, no_wall, block.near_sums.number_density, i);
   });
-  add_loop("matmult", [&block] { check(MatMult(block.solver.matrix(), block.x, block.y)); });
+  add_loop("product", [&block] { check(MatMult(block.solver.matrix(), block.x, block.y)); });
   add_loop("two_level_apply", [&block] { check(PCApply(block.preconditioner, block.x, block.y)); });
   add_loop("two_level_set_up", [&block] {
     block.two_level.expire();

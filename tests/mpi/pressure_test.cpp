@@ -135,14 +135,15 @@ class Distributed {
     for (const auto& [id, row] : gather_by_id(comm_, particles_, own_rows))
       id_of[static_cast<std::size_t>(row)] = static_cast<std::size_t>(id);
     std::vector<double> dense(n_ * n_, 0.0);
+    const PetscMatrix whole = solver_.whole_matrix(rows);
     for (const PetscInt row : own_rows) {
       PetscInt entries = 0;
       const PetscInt* columns = nullptr;
       const double* values = nullptr;
-      check(MatGetRow(solver_.matrix(), row, &entries, &columns, &values));
+      check(MatGetRow(whole, row, &entries, &columns, &values));
       for (PetscInt k = 0; k < entries; ++k)
         dense[id_of[static_cast<std::size_t>(row)] * n_ + id_of[static_cast<std::size_t>(columns[k])]] += values[k];
-      check(MatRestoreRow(solver_.matrix(), row, &entries, &columns, &values));
+      check(MatRestoreRow(whole, row, &entries, &columns, &values));
     }
     MPI_Allreduce(MPI_IN_PLACE, dense.data(), static_cast<int>(dense.size()), MPI_DOUBLE, MPI_SUM, comm_);
     return dense;
