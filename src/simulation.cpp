@@ -443,7 +443,7 @@ void Simulation<Dim>::weigh_images() {
   }
 }
 
-// (1 - gamma) rho/dt div u* - gamma rho/dt^2 (n* - n0)/n0 (paper eq. 8), for a column the sum over its particles.
+// (1 - gamma) rho/dt div u* - gamma rho/dt^2 crowding (paper eq. 8), for a column the sum over its particles.
 template <int Dim>
 void Simulation<Dim>::find_sources() {
   const double n0 = near_sums_.number_density;
@@ -456,7 +456,6 @@ void Simulation<Dim>::find_sources() {
   source_.assign(static_cast<std::size_t>(particles_.owned), 0.0);
   for (int i = 0; i < particles_.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
-    const bool ghost = particles_.type[self] == ParticleType::ghost;
     const std::size_t unknown = column_.empty() ? self : static_cast<std::size_t>(column_[self]);
     if (role_[self] != PressureRole::unknown) particles_.pressure[self] = 0.0;
     if (role_[unknown] != PressureRole::unknown) continue;
@@ -464,18 +463,17 @@ void Simulation<Dim>::find_sources() {
                             ? corrected_divergence<Dim>(search_.near(), particles_.position, particles_.velocity,
                                                         wall_normal_, correction_[self], n0, i)
                             : divergence<Dim>(search_.near(), particles_.position, particles_.velocity, n0, i);
-    // Ghosts and the free surface miss neighbours: their number density says nothing of crowding.
-    const double crowding = ghost || particles_.free_surface[self] ? 0.0 : this->crowding(i);
-    source_[unknown] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding;
+    source_[unknown] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding(i);
   }
 }
 
-// Of the volume per particle: how much smaller it is than the full lattice's, relatively.
+// (n* - n0)/n0, or the packing's. Ghosts and the free surface miss neighbours, which says nothing of crowding.
 template <int Dim>
 double Simulation<Dim>::crowding(int i) const {
-  return config_.pressure.packing
-             ? packing(search_.near(), i) / near_sums_.packing - 1.0
-             : particles_.number_density[static_cast<std::size_t>(i)] / near_sums_.number_density - 1.0;
+  const auto self = static_cast<std::size_t>(i);
+  if (particles_.type[self] == ParticleType::ghost || particles_.free_surface[self]) return 0.0;
+  return config_.pressure.packing ? packing(search_.near(), i) / near_sums_.packing - 1.0
+                                  : particles_.number_density[self] / near_sums_.number_density - 1.0;
 }
 
 // lap p = source.
