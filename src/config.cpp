@@ -145,7 +145,8 @@ const std::vector<Key>& keys() {
        "",
        {},
        "true; paper: false",
-       "a gradient of pressure differences corrected likewise; at the surface particles the paper's"},
+       "a gradient of pressure differences corrected likewise; at the surface particles the paper's, beside them of "
+       "differences from the smallest pressure around"},
       {IMPINGE_KEY(pressure.tolerance), every, "", above_to(0, 1e-6), "",
        "relative residual at which the pressure equation counts as solved"},
       {IMPINGE_KEY(pressure.clamp_negative), every, "", {}, "", "set negative pressures to zero after the solve"},
@@ -172,8 +173,9 @@ const std::vector<Key>& keys() {
        "p = 0 half a spacing outside the surface particles instead of at them"},
 
       {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "1.0; paper: 0.0",
-       "particles drift by this times the asymmetry F and the Courant number u_ref dt/dp each step, at most by 0.1 dp, "
-       "not through the free surface, spray not at all; 0: none do"},
+       "particles drift by this times the asymmetry F and u_ref dt/dp (u_ref: see pressure.density_speed) each step, "
+       "at "
+       "most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
        "",

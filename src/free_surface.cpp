@@ -59,9 +59,10 @@ double surface_depth(const PairRow& far, std::span<const Vec<Dim>> position, std
     const auto j = static_cast<std::size_t>(neighbour);
     if (!free_surface[j]) continue;
     const double size = norm(asymmetry[j]);
-    if (size == 0.0) continue;
     const Vec<Dim> offset = 1.0 / spacing * (position[j] - position[self]);
-    const double weight = 1.0 / std::pow(dot(offset, offset), 3);
+    const double square = dot(offset, offset);
+    if (size == 0.0 || square == 0.0) continue;
+    const double weight = 1.0 / (square * square * square);
     weights += weight;
     depths += weight * (dot(offset, asymmetry[j]) / size + SurfaceClosure<Dim>::least_depth);
   }

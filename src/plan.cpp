@@ -51,7 +51,6 @@ void count_halo(const CellGrid<Dim>& cells, std::span<const int> owner, const Ce
       receiver.halo += counts.particles[c];
       if (target.rank == owner[c]) continue;
       receiver.received += counts.particles[c];
-      receiver.received_rows += counts.rows[c];
       exchanges.emplace_back(target.rank, owner[c]);
     }
   }
@@ -106,7 +105,7 @@ Plan plan_run(MPI_Comm comm, const Config& config, int ranks) {
   for (RankPlan& rank : plan.ranks) {
     rank.field_bytes = static_cast<double>(rank.received) * sizeof(double);
     rank.step_bytes = static_cast<double>(rank.received) * costs.halo_traffic;
-    rank.iteration_bytes = static_cast<double>(rank.received_rows + 2 * rank.node_copies) * sizeof(double);
+    rank.iteration_bytes = static_cast<double>(rank.received + 2 * rank.node_copies) * sizeof(double);
     rank.memory = static_cast<double>(rank.owned + rank.halo) * costs.particle_memory +
                   static_cast<double>(rank.rows) * costs.row_memory +
                   static_cast<double>(plan.cells) * costs.cell_memory;

@@ -275,7 +275,6 @@ void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& 
   if (!any_rank(comm_, found)) return;
 
   // A pocket's label is its smallest row. Sweeps go forth and back along the sorted particles, so few are needed.
-  halo.refresh(anchored_, owned);
   std::vector<PetscInt> label(equation.row.begin(), equation.row.end());
   spread(comm_, halo, label, owned, [&] {
     bool changed = false, again = true;
@@ -370,8 +369,11 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
 }
 
 std::size_t PressureSolver::bytes() const {
-  return (right_hand_side_.capacity() + rows_.diagonal.capacity()) * sizeof(double) +
-         pocket_.capacity() * sizeof(PetscInt) + rows_.own.bytes() + rows_.others.bytes();
+  MatInfo whole{};
+  if (whole_matrix_ != nullptr) check(MatGetInfo(whole_matrix_, MAT_LOCAL, &whole));
+  return (right_hand_side_.capacity() + rows_.diagonal.capacity() + rows_.coupling.capacity()) * sizeof(double) +
+         pocket_.capacity() * sizeof(PetscInt) + rows_.own.bytes() + rows_.others.bytes() +
+         static_cast<std::size_t>(whole.nz_allocated) * (sizeof(PetscInt) + sizeof(double));
 }
 
 }  // namespace impinge

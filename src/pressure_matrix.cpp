@@ -81,6 +81,7 @@ void PressureMatrix::multiply(::Vec x, ::Vec y) {
 PetscMatrix PressureMatrix::whole_matrix(std::span<const PetscInt> row) const {
   PetscMatrix own;
   check(MatConvert(own_, MATSEQAIJ, MAT_INITIAL_MATRIX, own.address()));
+  check(MatSetOption(own, MAT_SPD, PETSC_TRUE));
   if (ranks_of(comm_) == 1) return own;
 
   const MatrixRows::Block& others = rows_->others;

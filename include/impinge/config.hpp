@@ -45,7 +45,7 @@ struct Config {
     double density_speed = 0.0;         ///< speed at which a density error is corrected [u_ref]; by scheme
     bool corrected_divergence = false;  ///< divergence exact on linear velocities; by scheme
     bool packing = false;               ///< density errors by the packing, not by the number density; by scheme
-    bool corrected_gradient = false;    ///< gradient exact on linear pressures, but at the surface; by scheme
+    bool corrected_gradient = false;    ///< gradient by differences of pressure, but at the surface; by scheme
     double tolerance = 1e-6;            ///< relative residual of the PPE solve
     bool clamp_negative = true;         ///< set negative pressures to zero after the solve
   } pressure;
@@ -75,7 +75,7 @@ struct Config {
     double end = 0.0;        ///< [s], required
     double dt = 0.0;         ///< largest step [s], required
     double cfl = 0.2;        ///< dt <= cfl dp / |u|max
-    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; default: 20 reference speeds
+    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; default: 20 times the case's own
   } time;
 
   struct {

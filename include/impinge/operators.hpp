@@ -13,9 +13,9 @@ namespace impinge {
 /// Particle number density n_i = sum_{j != i} W(r_ij) [-] (Koshizuka & Oka 1996).
 void number_density(const PairList& near, std::span<double> density);
 
-/// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. Clouds of the same volume per particle have the same,
-/// within half a percent, be they lattice or disorder; number density, whose kernel peaks at zero, counts a disordered
-/// one as one to two percent denser than it is.
+/// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. The lattice and clouds that a flow has stirred have
+/// the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at zero,
+/// counts the latter as up to two percent denser (docs/accuracy.md).
 double packing(const PairList& near, int i);
 
 /// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &

@@ -36,7 +36,7 @@ class Exchange {
     forward_bytes(send, receive, static_cast<int>(sizeof(T)));
   }
 
-  /// The two halves of forward, for work in between; neither array is touched there. Collective.
+  /// The two halves of forward, for work in between that touches neither array. Collective.
   void begin_forward(const double* send, double* receive) const;
   void end_forward(const double* send, double* receive) const;
 

@@ -12,15 +12,14 @@ namespace impinge {
 
 /// One rank of a planned run, in its initial state.
 struct RankPlan {
-  std::int64_t work = 0;           ///< what the partition balances
-  std::int64_t owned = 0;          ///< particles
-  std::int64_t rows = 0;           ///< owned fluid and wall particles: those with neighbours and a row of the matrix
-  std::int64_t halo = 0;           ///< copies of other ranks' particles, and periodic and mirror images
-  std::int64_t received = 0;       ///< those of them that come from other ranks, not images of its own particles
-  std::int64_t received_rows = 0;  ///< those of fluid and wall particles
-  std::int64_t neighbours = 0;     ///< other ranks that it receives copies from
-  std::int64_t nodes = 0;          ///< owned cells with particles, each a node of the two-level preconditioner's grid
-  std::int64_t node_copies = 0;    ///< cells of other ranks whose coarse values it exchanges
+  std::int64_t work = 0;         ///< what the partition balances
+  std::int64_t owned = 0;        ///< particles
+  std::int64_t rows = 0;         ///< owned fluid and wall particles: those with neighbours and a row of the matrix
+  std::int64_t halo = 0;         ///< copies of other ranks' particles, and periodic and mirror images
+  std::int64_t received = 0;     ///< those of them that come from other ranks, not images of its own particles
+  std::int64_t neighbours = 0;   ///< other ranks that it receives copies from
+  std::int64_t nodes = 0;        ///< owned cells with particles, each a node of the two-level preconditioner's grid
+  std::int64_t node_copies = 0;  ///< cells of other ranks whose coarse values it exchanges
 
   double field_bytes = 0.0;      ///< received when one double per halo particle is refreshed
   double step_bytes = 0.0;       ///< received per step in refreshes of the halo, but for the iterations of the solver

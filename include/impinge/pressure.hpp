@@ -21,8 +21,8 @@ enum class PressureRole : std::uint8_t {
   unknown
 };
 
-/// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. All views stay
-/// valid until assemble returns.
+/// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. Views are read
+/// while assemble runs.
 struct PressureEquation {
   /// Calls its argument for every owned particle in their order, with the pairs and weights of its Laplacian: columns
   /// of owned particles ascend, and where it has an unknown, the particle itself stands among them with weight 0.
@@ -66,7 +66,7 @@ class PressureSolver {
   /// Preconditioner of the coming solve, made anew by assemble.
   PC preconditioner() const;
 
-  /// Builds matrix and right-hand side. Collective.
+  /// Builds matrix and right-hand side; `halo` stays as it is until the next assemble. Collective.
   void assemble(const PressureEquation& equation, const Halo& halo);
 
   /// Solves for the owned particles; `pressure` [Pa] holds a guess (owned entries), the best multiple of which

@@ -30,8 +30,8 @@ struct MatrixRows {
 };
 
 /// Rows as a PETSc matrix for products: the own block an SBAIJ matrix, which is all there is on one rank; on several
-/// ranks a shell that adds the other ranks' columns, an AIJ block, once the halo has come. Uses the arrays as they are,
-/// without a copy, and the halo: both stay until the next build.
+/// ranks a shell that adds the other ranks' columns, an AIJ block, once the halo has come. Uses the arrays as they are
+/// (of less than 65,536 rows PETSc makes short column numbers besides) and the halo: both stay until the next build.
 class PressureMatrix {
  public:
   PressureMatrix() = default;
