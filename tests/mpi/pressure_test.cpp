@@ -21,6 +21,7 @@ namespace {
 constexpr double radius = 4.01;
 constexpr double factor = 0.04;  // 2 Dim/(n0 lambda) [1/m^2]
 constexpr double n0 = 24.671676;
+constexpr Edge edges[] = {Edge::open, Edge::periodic, Edge::mirror};
 
 /// Particles with what they are to the pressure equation, by id.
 struct Problem {
@@ -28,17 +29,25 @@ struct Problem {
   std::vector<PressureRole> role;
   std::vector<double> source;
   Vec<2> size;
-  bool periodic = false;
+  Edge edge = Edge::open;  // of the box [0, size], on all sides
 
   std::size_t count() const { return role.size(); }
 
-  Vec<2> offset(std::size_t i, std::size_t j) const {
-    Vec<2> between = particles.position[j] - particles.position[i];
-    for (int k = 0; k < 2 && periodic; ++k) between[k] -= size[k] * std::round(between[k] / size[k]);
-    return between;
+  /// Weights of particle j and its images in the row of particle i.
+  double weight(std::size_t i, std::size_t j) const {
+    const Vec<2>& at = particles.position[j];
+    double sum = 0.0;
+    for (const double x : images(at[0], size[0]))
+      for (const double y : images(at[1], size[1]))
+        sum += NonSingularKernel::weight(norm(Vec<2>{{x, y}} - particles.position[i]), radius);
+    return sum;
   }
 
-  double weight(std::size_t i, std::size_t j) const { return NonSingularKernel::weight(norm(offset(i, j)), radius); }
+  std::vector<double> images(double at, double length) const {
+    if (edge == Edge::periodic) return {at, at - length, at + length};
+    if (edge == Edge::mirror) return {at, -at, 2.0 * length - at};
+    return {at};
+  }
 
   void add(const Vec<2>& position, PressureRole what, double strength) {
     particles.append({position, {}, 0.0, 0.0, particles.owned, ParticleType::fluid});
@@ -48,12 +57,12 @@ struct Problem {
 };
 
 /// An irregular cloud of 24 x 14 particles; the source is irregular too.
-Problem cloud(const std::function<PressureRole(const Vec<2>&)>& role_at, bool periodic = false) {
+Problem cloud(const std::function<PressureRole(const Vec<2>&)>& role_at, Edge edge = Edge::open) {
   const std::array<int, 2> extent{24, 14};
   const Particles<2> points = make_cloud<2>(extent, 0.3);
   Problem problem;
   problem.size = {{24.0, 14.0}};
-  problem.periodic = periodic;
+  problem.edge = edge;
   for (std::size_t i = 0; i < points.position.size(); ++i)
     problem.add(points.position[i], role_at(points.position[i]), points.pressure[i]);
   return problem;
@@ -71,15 +80,14 @@ PressureRole all_unknown(const Vec<2>&) { return PressureRole::unknown; }
 /// A problem on the ranks of a communicator.
 class Distributed {
  public:
-  static Edges<2> edges(const Problem& problem) {
-    const Edge edge = problem.periodic ? Edge::periodic : Edge::open;
-    return {{{edge, edge}, {edge, edge}}};
+  static Edges<2> edges_of(const Problem& problem) {
+    return {{{problem.edge, problem.edge}, {problem.edge, problem.edge}}};
   }
 
   Distributed(MPI_Comm comm, const Problem& problem, double tolerance = 1e-12)
       : comm_(comm),
         n_(problem.count()),
-        domain_(comm, {{}, problem.size}, edges(problem), radius, Partitioner::metis),
+        domain_(comm, {{}, problem.size}, edges_of(problem), radius, Partitioner::metis),
         search_(domain_.sorting_cells(), Domain<2>::cell_parts, KernelType::non_singular, 2.1, radius),
         solver_(comm, tolerance) {
     for_share(static_cast<std::int64_t>(n_), rank_of(comm), ranks_of(comm),
@@ -230,44 +238,47 @@ void expect_solution(
 }
 
 TEST(PressureMatrix, IsThatOfBruteForce) {
-  const Problem problem = cloud(basin);
-  const std::vector<double> matrix = Distributed(MPI_COMM_WORLD, problem).matrix();
-  const std::size_t n = problem.count();
-  for (std::size_t i = 0; i < n; ++i) {
-    double diagonal = 0.0;
-    for (std::size_t j = 0; j < n; ++j) {
-      if (j == i || problem.role[j] == PressureRole::excluded) continue;
-      diagonal += problem.weight(i, j);
-      const bool coupled = problem.role[i] == PressureRole::unknown && problem.role[j] == PressureRole::unknown;
-      EXPECT_NEAR(matrix[i * n + j], coupled ? -problem.weight(i, j) : 0.0, 1e-14);
+  for (const Edge edge : edges) {
+    const Problem problem = cloud(basin, edge);
+    const std::vector<double> matrix = Distributed(MPI_COMM_WORLD, problem).matrix();
+    const std::size_t n = problem.count();
+    for (std::size_t i = 0; i < n; ++i) {
+      double diagonal = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (j == i || problem.role[j] == PressureRole::excluded) continue;
+        diagonal += problem.weight(i, j);
+        const bool coupled = problem.role[i] == PressureRole::unknown && problem.role[j] == PressureRole::unknown;
+        EXPECT_NEAR(matrix[i * n + j], coupled ? -problem.weight(i, j) : 0.0, edge == Edge::open ? 1e-14 : 1e-12);
+      }
+      EXPECT_NEAR(matrix[i * n + i], problem.role[i] == PressureRole::unknown ? diagonal : n0, 1e-12);
     }
-    EXPECT_NEAR(matrix[i * n + i], problem.role[i] == PressureRole::unknown ? diagonal : n0, 1e-12);
   }
 }
 
-// To the last bit, but for the rounding of periodic images.
+// To the last bit, but for the rounding of images.
 TEST(PressureMatrix, IsSymmetricAndPositiveDefinite) {
-  for (const bool periodic : {false, true}) {
+  for (const Edge edge : edges) {
     for (const auto& roles : {basin, all_unknown}) {
-      const Problem problem = cloud(roles, periodic);
+      const Problem problem = cloud(roles, edge);
       std::vector<double> matrix = Distributed(MPI_COMM_WORLD, problem).matrix();
       const std::size_t n = problem.count();
       for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < i; ++j) EXPECT_NEAR(matrix[i * n + j], matrix[j * n + i], periodic ? 1e-13 : 0.0);
+        for (std::size_t j = 0; j < i; ++j)
+          EXPECT_NEAR(matrix[i * n + j], matrix[j * n + i], edge == Edge::open ? 0.0 : 1e-13);
       EXPECT_TRUE(cholesky(matrix, n));
     }
   }
 }
 
 TEST(PressureMatrix, HalfOfItGivesTheWholeProduct) {
-  for (const bool periodic : {false, true})
+  for (const Edge edge : edges)
     for (const auto& roles : {basin, all_unknown})
-      EXPECT_LT(Distributed(MPI_COMM_WORLD, cloud(roles, periodic)).product_difference(), 1e-12);
+      EXPECT_LT(Distributed(MPI_COMM_WORLD, cloud(roles, edge)).product_difference(), 1e-12);
 }
 
 TEST(Pressure, SolvesTheEquation) {
-  for (const bool periodic : {false, true}) {
-    const Problem problem = cloud(basin, periodic);
+  for (const Edge edge : edges) {
+    const Problem problem = cloud(basin, edge);
     Distributed system(MPI_COMM_WORLD, problem);
     const PressureReport report = system.solve();
     EXPECT_EQ(report.failure, "");
@@ -362,8 +373,8 @@ TEST(Pressure, OfSeveralClustersAndSingleParticlesIsFixedInEach) {
 }
 
 TEST(Pressure, OfABoxWithoutFreeSurfaceIsFixedByItsLowestValue) {
-  for (const bool periodic : {false, true}) {
-    const Problem problem = cloud(all_unknown, periodic);
+  for (const Edge edge : edges) {
+    const Problem problem = cloud(all_unknown, edge);
     Distributed system(MPI_COMM_WORLD, problem);
     const PressureReport report = system.solve();
     EXPECT_EQ(report.failure, "");

@@ -167,7 +167,7 @@ TYPED_TEST_SUITE(TwoLevel, Dimensions);
 TYPED_TEST(TwoLevel, IsExactForLinearFields) {
   constexpr int Dim = TypeParam::value;
   const Option exact("-ppe_coarse_pc_type", "redundant");
-  for (const Edge lower_edges : {Edge::open, Edge::mirror}) {  // too far away to see the cloud's images
+  for (const Edge lower_edges : {Edge::open, Edge::mirror}) {  // too far away for the cloud to see its images
     Cloud<Dim> cloud(MPI_COMM_WORLD, cells<Dim>(6, 4), all_unknown<Dim>, lower_edges);
     cloud.update(0);
     std::vector<double> linear;
