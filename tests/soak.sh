@@ -8,6 +8,7 @@ cd "$(dirname "$0")/.."
 steps=${1:-20000}
 directory=${2:-output/soak}
 history=$directory/jet60-quick_history.csv
+rm -f "$history"  # of an earlier soak
 start=$(date +%s)
 mpirun --oversubscribe -n 2 "$bin/impinge" input/jet60-quick.toml --set "output.directory=$directory" --set time.end=1e4 \
   --set output.average_start=0 --set checkpoint.steps=1000 >"$directory.log" 2>&1 &
