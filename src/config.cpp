@@ -174,8 +174,7 @@ const std::vector<Key>& keys() {
 
       {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "1.0; paper: 0.0",
        "particles drift by this times the asymmetry F and u_ref dt/dp (u_ref: see pressure.density_speed) each step, "
-       "at "
-       "most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
+       "at most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
        "",

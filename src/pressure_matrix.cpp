@@ -49,12 +49,7 @@ void PressureMatrix::build(MPI_Comm comm, MatrixRows& rows, const Halo& halo) {
   const Product product = [](Mat shell, ::Vec x, ::Vec y) -> PetscErrorCode {
     void* self = nullptr;
     PetscCall(MatShellGetContext(shell, &self));
-    try {
-      static_cast<PressureMatrix*>(self)->multiply(x, y);
-    } catch (const PetscFailure& error) {  // must not pass through PETSc
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", error.what());
-    }
-    return 0;
+    return code_of([&] { static_cast<PressureMatrix*>(self)->multiply(x, y); });
   };
   check(MatShellSetOperation(shell_, MATOP_MULT, reinterpret_cast<void (*)()>(product)));
   check(MatSetOption(shell_, MAT_SPD, PETSC_TRUE));
@@ -65,7 +60,7 @@ void PressureMatrix::multiply(::Vec x, ::Vec y) {
   double* to = nullptr;
   check(VecGetArrayRead(x, &from));
   check(VecGetArray(y, &to));
-  for (std::size_t k = 0; k < sent_.size(); ++k) sent_[k] = from[halo_->index()[k]];
+  halo_->pack(from, sent_);
   halo_->exchange().begin_forward(sent_.data(), halo_x_.data());
   check(VecPlaceArray(own_x_, from));
   check(VecPlaceArray(own_y_, to));

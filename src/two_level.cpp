@@ -394,12 +394,7 @@ void TwoLevelPreconditioner<Dim>::attach(PC preconditioner) {
   check(PCShellSetApply(preconditioner, [](PC shell, ::Vec residual, ::Vec result) -> PetscErrorCode {
     void* self = nullptr;
     PetscCall(PCShellGetContext(shell, &self));
-    try {
-      static_cast<TwoLevelPreconditioner*>(self)->apply(residual, result);
-    } catch (const PetscFailure& error) {  // must not pass through PETSc
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", error.what());
-    }
-    return 0;
+    return code_of([&] { static_cast<TwoLevelPreconditioner*>(self)->apply(residual, result); });
   }));
 }
 

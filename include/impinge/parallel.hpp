@@ -59,11 +59,17 @@ class Halo {
   const Exchange& exchange() const { return exchange_; }
   std::span<const int> index() const { return index_; }
 
+  /// Copies what refresh sends of a field of owned particles. Not collective.
+  template <class T>
+  void pack(const T* field, std::vector<T>& packed) const {
+    for (std::size_t k = 0; k < index_.size(); ++k) packed[k] = field[index_[k]];
+  }
+
   /// Copies field[owned] of the senders to field[owned, owned + n_receive). Collective.
   template <class T>
   void refresh(std::vector<T>& field, int owned) const {
     std::vector<T> packed(index_.size());
-    for (std::size_t k = 0; k < index_.size(); ++k) packed[k] = field[static_cast<std::size_t>(index_[k])];
+    pack(field.data(), packed);
     exchange_.forward(packed.data(), field.data() + owned);
   }
 

@@ -21,6 +21,18 @@ class PetscFailure : public std::runtime_error {
 /// Throws PetscFailure, with the caller's place and PETSc's text, unless the code is 0. Not collective.
 void check(PetscErrorCode code, std::source_location place = std::source_location::current());
 
+/// What a function that PETSc calls back returns: 0, or PETSc's code where action() throws PetscFailure, which must not
+/// pass through PETSc.
+template <class Action>
+PetscErrorCode code_of(Action&& action) {
+  try {
+    action();
+  } catch (const PetscFailure& error) {
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", error.what());
+  }
+  return 0;
+}
+
 /// PETSc between construction and destruction, with these command-line words. PETSc's own error traces are silenced;
 /// check() gives its message. Collective.
 class PetscSession {
