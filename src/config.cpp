@@ -133,7 +133,8 @@ const std::vector<Key>& keys() {
        "",
        {},
        "true; paper: false",
-       "measure density errors by sum (1 - r/r_e)^3, which disorder leaves alone, instead of the number density"},
+       "measure density errors by the sum of (1 - r/r_e)^4 (1 + 4 r/r_e), which disorder leaves alone, instead of the "
+       "number density"},
       {IMPINGE_KEY(pressure.corrected_divergence),
        every,
        "",
@@ -175,6 +176,9 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "1.0; paper: 0.0",
        "particles drift by this times the asymmetry F and u_ref dt/dp (u_ref: see pressure.density_speed) each step, "
        "at most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
+      {IMPINGE_KEY(shifting.least_distance), every, "dp", from_to(0, 1), "0.9; paper: 0.0",
+       "pairs of fluid particles nearer than this drift apart, by the difference times shifting.coefficient and "
+       "u_ref dt/dp; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
        "",
@@ -190,6 +194,12 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(time.dt), every, "s", positive, required,
        "largest time step; the first has at most cfl = 0.05, and a step at most 1.1 times the last"},
       {IMPINGE_KEY(time.cfl), every, "", above_to(0, 1), "", "the time step is at most cfl dp / |u|max"},
+      {IMPINGE_KEY(time.mean_velocity),
+       every,
+       "",
+       {},
+       "true; paper: false",
+       "in a step, particles move with the mean of their old and their new velocity, not with the new one"},
       {IMPINGE_KEY(time.max_speed), every, "m/s", positive,
        "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height) or periodic_box.shear_speed",
        "a faster particle counts as divergence and ends the run"},
@@ -700,8 +710,10 @@ void CaseReader::derive_scheme() {
   derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);
   derive("free_surface.zero_outside", config_.free_surface.zero_outside, true);
   derive("shifting.coefficient", config_.shifting.coefficient, 1.0);
+  derive("shifting.least_distance", config_.shifting.least_distance, 0.9);
   derive("shifting.correct_velocity", config_.shifting.correct_velocity, true);
   derive("collision.distance", config_.collision.distance, 0.5);
+  derive("time.mean_velocity", config_.time.mean_velocity, true);
 }
 
 void CaseReader::derive_defaults() {

@@ -1,6 +1,7 @@
 #include "impinge/kernel.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "impinge/types.hpp"
 
@@ -17,10 +18,13 @@ LatticeSums lattice_sums(KernelType type, double effective_radius) {
   const auto add = [&](const Vec<Dim>& offset) {
     const double r = norm(offset);
     if (r == 0.0 || r >= effective_radius) return;
-    const double weight = with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+    const auto [weight, packed] = with_kernel(type, [&]<class Kernel>(Kernel) {
+      const double w = Kernel::weight(r, effective_radius);
+      return std::pair(w, packing_weight<Kernel>(w));
+    });
     ++neighbours;
     sum += weight;
-    packing += packing_weight(weight);
+    packing += packed;
     second_moment += weight * r * r;
     if (offset[Dim - 1] < 0.0) half_space -= weight * offset[Dim - 1] / r;
   };

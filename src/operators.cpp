@@ -37,10 +37,12 @@ void number_density(const PairList& near, std::span<double> density) {
   }
 }
 
-double packing(const PairList& near, int i) {
-  double sum = 0.0;
-  for_pairs(near, i, [&](std::size_t, double weight) { sum += packing_weight(weight); });
-  return sum;
+double packing(const PairList& near, KernelType kernel, int i) {
+  return with_kernel(kernel, [&]<class Kernel>(Kernel) {
+    double sum = 0.0;
+    for_pairs(near, i, [&](std::size_t, double weight) { sum += packing_weight<Kernel>(weight); });
+    return sum;
+  });
 }
 
 template <int Dim>
@@ -108,6 +110,21 @@ Vec<Dim> corrected_gradient(const PairList& near, std::span<const Vec<Dim>> posi
     sum += (pressure[j] - base) * weight / dot(offset, offset) * offset;
   });
   return Dim / n0 * (correction * sum);
+}
+
+template <int Dim>
+Vec<Dim> repulsion(const PairList& near, std::span<const Vec<Dim>> position, std::span<const ParticleType> type,
+                   double distance, double spacing, int i) {
+  const Vec<Dim> centre = position[static_cast<std::size_t>(i)];
+  Vec<Dim> push;
+  for_pairs(near, i, [&](std::size_t j, double) {
+    if (type[j] != ParticleType::fluid) return;
+    const Vec<Dim> offset = centre - position[j];
+    const double r = norm(offset);
+    const double overlap = distance - r / spacing;
+    if (overlap > 0.0 && r > 0.0) push += overlap / r * offset;
+  });
+  return push;
 }
 
 template <int Dim>
@@ -208,6 +225,8 @@ Vec<Dim> collision(const PairList& near, std::span<const Vec<Dim>> position, std
                                             std::span<const Vec<Dim>>, const Matrix<Dim>&, double, int);               \
   template Vec<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,       \
                                             double, const Matrix<Dim>&, double, int);                                  \
+  template Vec<Dim> repulsion<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const ParticleType>, double,  \
+                                   double, int);                                                                       \
   template Vec<Dim> velocity_change_along<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const Vec<Dim>>,  \
                                                std::span<const ParticleType>, const Vec<Dim>&, double, int);           \
   template Vec<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vec<Dim>>, std::span<const double>,        \

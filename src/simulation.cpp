@@ -254,7 +254,13 @@ void Simulation<Dim>::choose_time_step() {
                                                 : StepLimit::growth;
 }
 
-// u* = u + dt (nu lap u + g), with the pairs of the last step.
+// Of a change of velocity in a step, what the particle moves by.
+template <int Dim>
+double Simulation<Dim>::moving_share() const {
+  return config_.time.mean_velocity ? 0.5 : 1.0;
+}
+
+// u* = u + dt (nu lap u + g), with the pairs of the last step. Places are moved back by what advance() moves too far.
 template <int Dim>
 void Simulation<Dim>::accelerate() {
   const LogStage log(stage(predicting));
@@ -268,8 +274,12 @@ void Simulation<Dim>::accelerate() {
           nu * report_.dt * velocity_laplacian<Dim>(row, particles_.velocity, laplacian_factor_, i);
     });
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i)
-    if (moves(particles_.type[i])) particles_.velocity[i] += velocity_change_[i];
+  const double excess = (1.0 - moving_share()) * report_.dt;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
+    if (!moves(particles_.type[i])) continue;
+    particles_.velocity[i] += velocity_change_[i];
+    particles_.position[i] -= excess * velocity_change_[i];
+  }
 }
 
 // A viscous fluid does not slip: its images move against it; those of two mirrors, in a corner, with it.
@@ -472,7 +482,7 @@ template <int Dim>
 double Simulation<Dim>::crowding(int i) const {
   const auto self = static_cast<std::size_t>(i);
   if (particles_.type[self] == ParticleType::ghost || particles_.free_surface[self]) return 0.0;
-  return config_.pressure.packing ? packing(search_.near(), i) / near_sums_.packing - 1.0
+  return config_.pressure.packing ? packing(search_.near(), config_.kernel.type, i) / near_sums_.packing - 1.0
                                   : particles_.number_density[self] / near_sums_.number_density - 1.0;
 }
 
@@ -547,7 +557,7 @@ void Simulation<Dim>::share_wall_pressure() {
       pressure[static_cast<std::size_t>(i)] = weighted_mean(search_.near(), pressure, i);
 }
 
-// u = u* - dt/rho grad p.
+// u = u* - dt/rho grad p, and the displacement that goes with it.
 template <int Dim>
 void Simulation<Dim>::correct() {
   const LogStage log(stage(correcting));
@@ -567,7 +577,7 @@ void Simulation<Dim>::correct() {
   displacement_.resize(static_cast<std::size_t>(particles_.owned));
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles_.owned); ++i) {
     particles_.velocity[i] += velocity_change_[i];
-    displacement_[i] = report_.dt * velocity_change_[i];
+    displacement_[i] = moving_share() * report_.dt * velocity_change_[i];
   }
 }
 
@@ -582,8 +592,8 @@ double Simulation<Dim>::base_pressure(int i) const {
   return particles_.pressure[static_cast<std::size_t>(i)];
 }
 
-// r = r* + dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C u_ref dt F, but not
-// through the free surface, and take the velocity of their new place.
+// r = r* + share dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C u_ref dt F, but not
+// through the free surface, push each other apart where they are too near, and take the velocity of their new place.
 template <int Dim>
 void Simulation<Dim>::shift() {
   const LogStage log(stage(correcting));
@@ -598,6 +608,8 @@ void Simulation<Dim>::shift() {
     const Vec<Dim> normal = surface_normal<Dim>(search_.near(), asymmetry_, particles_.free_surface, i);
     Vec<Dim> delta = scale * asymmetry_[self];
     delta -= dot(delta, normal) * normal;
+    delta += scale * repulsion<Dim>(search_.near(), particles_.position, particles_.type,
+                                    config_.shifting.least_distance, config_.particles.spacing, i);
     if (const double length = norm(delta); length > largest) delta *= largest / length;
     displacement_[self] += delta;
     if (corrects)

@@ -68,14 +68,16 @@ struct Config {
 
   struct {
     double coefficient = 0.0;       ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
+    double least_distance = 0.0;    ///< nearer pairs push each other apart [dp]; 0: none do; by scheme
     bool correct_velocity = false;  ///< take the velocity of the new place; by scheme
   } shifting;
 
   struct {
-    double end = 0.0;        ///< [s], required
-    double dt = 0.0;         ///< largest step [s], required
-    double cfl = 0.2;        ///< dt <= cfl dp / |u|max
-    double max_speed = 0.0;  ///< speed that counts as divergence [m/s]; default: 20 times the case's own
+    double end = 0.0;            ///< [s], required
+    double dt = 0.0;             ///< largest step [s], required
+    double cfl = 0.2;            ///< dt <= cfl dp / |u|max
+    bool mean_velocity = false;  ///< particles move with the mean of the old and the new velocity; by scheme
+    double max_speed = 0.0;      ///< speed that counts as divergence [m/s]; default: 20 times the case's own
   } time;
 
   struct {

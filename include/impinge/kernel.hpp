@@ -11,6 +11,8 @@ struct NonSingularKernel {
   static double weight(double r, double effective_radius) {
     return r < effective_radius ? effective_radius / (0.85 * r + 0.15 * effective_radius) - 1.0 : 0.0;
   }
+  /// 1 - r/r_e [-] of a weight.
+  static double reach(double weight) { return weight / (0.85 * (1.0 + weight)); }
 };
 
 /// W(r) = r_e/r - 1 for 0 < r < r_e, else 0 (paper eq. 9). r and r_e in the same unit; infinite at r = 0.
@@ -18,6 +20,8 @@ struct SingularKernel {
   static double weight(double r, double effective_radius) {
     return r < effective_radius ? effective_radius / r - 1.0 : 0.0;
   }
+  /// 1 - r/r_e [-] of a weight.
+  static double reach(double weight) { return weight / (1.0 + weight); }
 };
 
 /// Calls `use` with an object of the kernel's type, so that a loop over pairs is compiled for each kernel.
@@ -26,10 +30,12 @@ decltype(auto) with_kernel(KernelType type, Use&& use) {
   return type == KernelType::singular ? use(SingularKernel{}) : use(NonSingularKernel{});
 }
 
-/// (W/(1 + W))^3 [-] of a pair's weight W: with both kernels proportional to (1 - r/r_e)^3.
-inline double packing_weight(double weight) {
-  const double reach = weight / (1.0 + weight);
-  return reach * reach * reach;
+/// (1 - r/r_e)^4 (1 + 4 r/r_e) [-] of a pair's weight: the kernel C2 of Wendland (1995).
+template <class Kernel>
+double packing_weight(double weight) {
+  const double reach = Kernel::reach(weight);
+  const double square = reach * reach;
+  return square * square * (5.0 - 4.0 * reach);
 }
 
 /// Sums over the neighbours of a particle on the full square or cubic lattice of spacing 1.

@@ -15,8 +15,8 @@ void number_density(const PairList& near, std::span<double> density);
 
 /// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. The lattice and clouds that a flow has stirred have
 /// the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at zero,
-/// counts the latter as up to two percent denser (docs/accuracy.md).
-double packing(const PairList& near, int i);
+/// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`: the one of the weights.
+double packing(const PairList& near, KernelType kernel, int i);
 
 /// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &
 /// Wan 2012).
@@ -56,6 +56,12 @@ Vec<Dim> corrected_gradient(const PairList& near, std::span<const Vec<Dim>> posi
 
 /// The smallest pressure of particle i and its neighbours [Pa].
 double least_pressure(const PairList& near, std::span<const double> pressure, int i);
+
+/// Push away from the fluid neighbours that are too near, sum (distance - r_ij/dp) (r_i - r_j)/r_ij [-] over those
+/// nearer than `distance` [dp]; equal and opposite for the two of a pair. `spacing`: dp [m].
+template <int Dim>
+Vec<Dim> repulsion(const PairList& near, std::span<const Vec<Dim>> position, std::span<const ParticleType> type,
+                   double distance, double spacing, int i);
 
 /// Change of velocity over a displacement, (delta . grad) u [m/s], from the neighbours that are no wall; exact on
 /// linear velocities, zero where the neighbours are too few. No component of the new velocity leaves the range of the

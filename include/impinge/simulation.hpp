@@ -143,6 +143,7 @@ class Simulation {
   double crowding(int i) const;
   double base_pressure(int i) const;
   double reference_speed() const;
+  double moving_share() const;
   bool is_splash(std::size_t i) const;
 
   [[noreturn]] void fail(const char* phase, const std::string& reason) const;

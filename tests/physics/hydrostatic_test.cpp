@@ -102,5 +102,28 @@ TEST_P(Hydrostatic, ColumnStaysAtRestUnderItsWeight) {
   EXPECT_NEAR(highest, height - 0.5 * dp, dp);
 }
 
+// Gravity lifts the column off the floor.
+TEST(FreeFall, IsAParabolaWithTheMeanVelocity) {
+  constexpr double gravity = 9.81;
+  for (const bool mean : {true, false}) {
+    const Config config =
+        shipped_case("hydrostatic.toml", {"fluid.gravity=[0, 9.81]", fmt::format("time.mean_velocity={}", mean)});
+    Simulation<2> simulation(comm, config);
+    double late = 0.0;  // of the place, where the whole new velocity moves it
+    for (int n = 0; n < 30; ++n) {
+      simulation.step();
+      late += 0.5 * gravity * std::pow(simulation.report().dt, 2);
+    }
+    const auto& particles = simulation.particles();
+    double highest = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::fluid) highest = std::max(highest, particles.position[i][1]);
+    highest = max_over_ranks(comm, highest);
+    const double start = config.tank.fluid_height - 0.5 * config.particles.spacing;
+    const double fall = 0.5 * gravity * std::pow(simulation.report().time, 2);
+    EXPECT_NEAR(highest, start + fall + (mean ? 0.0 : late), 1e-9 * fall);
+  }
+}
+
 }  // namespace
 }  // namespace impinge

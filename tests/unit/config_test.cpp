@@ -108,8 +108,10 @@ const char* const scheme_keys[] = {"pressure.density_speed",
                                    "walls.model",
                                    "free_surface.zero_outside",
                                    "shifting.coefficient",
+                                   "shifting.least_distance",
                                    "shifting.correct_velocity",
-                                   "collision.distance"};
+                                   "collision.distance",
+                                   "time.mean_velocity"};
 
 std::string scheme_value(const std::string& scheme, const std::string& key) {
   for (const std::string& line : resolved_lines(parse("scheme = \"" + scheme + "\"")))
@@ -126,8 +128,10 @@ TEST(Config, TheSchemeSetsDefaults) {
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
     EXPECT_EQ(c.free_surface.zero_outside, consistent);
     EXPECT_EQ(c.shifting.coefficient, consistent ? 1.0 : 0.0);
+    EXPECT_EQ(c.shifting.least_distance, consistent ? 0.9 : 0.0);
     EXPECT_EQ(c.shifting.correct_velocity, consistent);
     EXPECT_EQ(c.collision.distance, consistent ? 0.5 : 0.8);
+    EXPECT_EQ(c.time.mean_velocity, consistent);
   };
   check(parse(""), true);
   check(parse("scheme = \"consistent\""), true);
@@ -199,10 +203,12 @@ TEST(Config, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_ref)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
             Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
+  EXPECT_EQ(mistakes_in("shifting.least_distance = 1.1"),
+            Texts{"case.toml:1: shifting.least_distance = 1.1: out of range; allowed: [0, 1] (dp)"});
   EXPECT_EQ(mistakes_in("collision.distance = 1.1"),
             Texts{"case.toml:1: collision.distance = 1.1: out of range; allowed: [0, 1] (dp)"});
   for (const std::string key : {"pressure.packing", "pressure.corrected_divergence", "pressure.corrected_gradient",
-                                "free_surface.zero_outside", "shifting.correct_velocity"})
+                                "free_surface.zero_outside", "shifting.correct_velocity", "time.mean_velocity"})
     EXPECT_EQ(mistakes_in(key + " = 1"), Texts{"case.toml:1: " + key + " = 1: not a boolean; allowed: true, false"});
 }
 
@@ -288,7 +294,7 @@ TEST(Config, FindsUnknownKeysAndNamesTheNearest) {
             Texts{"case.toml:2: partcles.spacing = 1: unknown key; did you mean particles.spacing?"});
   EXPECT_EQ(mistakes_in("time.steps_in_all = 1"),
             Texts{"case.toml:1: time.steps_in_all = 1: unknown key; allowed: time.end, time.dt, time.cfl, "
-                  "time.max_speed"});
+                  "time.mean_velocity, time.max_speed"});
   EXPECT_EQ(mistakes_in("turbulence.closure = \"k-epsilon\""),
             Texts{"case.toml:1: turbulence.closure = \"k-epsilon\": unknown key"});
 }

@@ -40,6 +40,27 @@ TEST(LatticeSums, OfAFlatSurface) {
   EXPECT_NEAR(relative_density_below_surface(2), 1.0, 1e-14);
 }
 
+/// Packing of the square lattice, sheared by stretching it e^strain-fold along its diagonal, over that at rest.
+double relative_packing(double strain) {
+  constexpr double radius = 2.1;
+  double sum = 0.0;
+  for (int x = -5; x <= 5; ++x) {
+    for (int y = -5; y <= 5; ++y) {
+      if (x == 0 && y == 0) continue;
+      const double along = std::exp(strain) * (x + y), across = std::exp(-strain) * (x - y);
+      const double r = std::sqrt(0.5) * std::hypot(along, across);
+      sum += packing_weight<NonSingularKernel>(NonSingularKernel::weight(r, radius));
+    }
+  }
+  return sum / lattice_sums<2>(KernelType::non_singular, radius).packing;
+}
+
+// At a strain of ln(3)/4 the lattice has become the hexagonal one.
+TEST(LatticeSums, PackingDoesNotSeeAShearOfTheLattice) {
+  EXPECT_NEAR(relative_packing(0.0), 1.0, 1e-14);
+  for (const double strain : {0.1, 0.2, 0.25 * std::log(3.0)}) EXPECT_NEAR(relative_packing(strain), 1.0, 0.0015);
+}
+
 // Radius 1.2 reaches the six nearest neighbours only, 1.5 the twelve behind them too.
 TEST(LatticeSums, OfTheCubicLattice) {
   const LatticeSums nearest = lattice_sums<3>(KernelType::singular, 1.2);

@@ -51,20 +51,19 @@ TYPED_TEST(Operators, NumberDensityIsThatOfTheFullLattice) {
   }
 }
 
-TYPED_TEST(Operators, PackingIsTheSumOfCubesWithEitherKernel) {
+TYPED_TEST(Operators, PackingIsTheSumOfWendlandsKernelWithEitherKernel) {
   constexpr int Dim = TypeParam::value;
   for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
     const Cloud<Dim> lattice(0.0, kernel);
-    EXPECT_NEAR(packing(lattice.near, lattice.centre()), lattice.sums.packing, 1e-12);
-    const auto cubes = [](const Cloud<Dim>& cloud) {
-      const Vec<Dim> centre = cloud.particles.position[static_cast<std::size_t>(cloud.centre())];
-      double sum = 0.0;
-      for (int j = 0; j < cloud.particles.owned; ++j)
-        if (j != cloud.centre()) sum += std::pow(std::max(1.0 - cloud.distance(j, centre) / near_radius, 0.0), 3);
-      return sum;
-    };
+    EXPECT_NEAR(packing(lattice.near, kernel, lattice.centre()), lattice.sums.packing, 1e-12);
     const Cloud<Dim> cloud(0.2, kernel);
-    EXPECT_NEAR(packing(cloud.near, cloud.centre()) / lattice.sums.packing, cubes(cloud) / cubes(lattice), 1e-12);
+    const Vec<Dim> centre = cloud.particles.position[static_cast<std::size_t>(cloud.centre())];
+    double sum = 0.0;
+    for (int j = 0; j < cloud.particles.owned; ++j) {
+      const double q = std::min(cloud.distance(j, centre) / near_radius, 1.0);
+      if (j != cloud.centre()) sum += std::pow(1.0 - q, 4) * (1.0 + 4.0 * q);
+    }
+    EXPECT_NEAR(packing(cloud.near, kernel, cloud.centre()), sum, 1e-12);
   }
 }
 
@@ -269,6 +268,25 @@ TYPED_TEST(Operators, AreNotCorrectedWhereNeighboursAreTooFewOrInLine) {
   } else {
     expect_uncorrected();  // all in a plane
   }
+}
+
+TYPED_TEST(Operators, RepulsionPartsFluidThatIsTooNear) {
+  constexpr int Dim = TypeParam::value;
+  constexpr double spacing = 0.8;
+  Group<Dim> pair;
+  pair.add(0.0, 0.0, 0.0, 0.0);
+  pair.add(0.3, -0.4, 0.0, 0.0);
+  const auto of = [&](int i, double distance) {
+    return repulsion<Dim>(pair.pairs(), pair.position, pair.type, distance, spacing, i);
+  };
+  const Vec<Dim> push = of(0, 0.9);  // at 0.625 dp
+  EXPECT_NEAR(push[0], -0.275 * 0.6, 1e-14);
+  EXPECT_NEAR(push[1], 0.275 * 0.8, 1e-14);
+  EXPECT_EQ(of(1, 0.9), -1.0 * push);
+  EXPECT_EQ(of(0, 0.62), Vec<Dim>{});
+  EXPECT_EQ(of(0, 0.0), Vec<Dim>{});
+  pair.type[1] = ParticleType::wall;
+  EXPECT_EQ(of(0, 0.9), Vec<Dim>{});
 }
 
 TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
