@@ -177,8 +177,8 @@ const std::vector<Key>& keys() {
        "particles drift by this times the asymmetry F and u_ref dt/dp (u_ref: see pressure.density_speed) each step, "
        "at most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.least_distance), every, "dp", from_to(0, 1), "0.9; paper: 0.0",
-       "pairs of fluid particles nearer than this drift apart, by the difference times shifting.coefficient and "
-       "u_ref dt/dp; 0: none do"},
+       "beside the free surface, fluid particles nearer than this drift apart, by the difference times "
+       "shifting.coefficient and u_ref dt/dp; 0: none do"},
       {IMPINGE_KEY(shifting.correct_velocity),
        every,
        "",

@@ -593,7 +593,8 @@ double Simulation<Dim>::base_pressure(int i) const {
 }
 
 // r = r* + share dt (u - u*) + delta. Particles drift to where neighbours are missing, delta = C u_ref dt F, but not
-// through the free surface, push each other apart where they are too near, and take the velocity of their new place.
+// through the free surface: beside it, they push each other apart where they are too near. They take the velocity of
+// their new place.
 template <int Dim>
 void Simulation<Dim>::shift() {
   const LogStage log(stage(correcting));
@@ -607,9 +608,11 @@ void Simulation<Dim>::shift() {
     if (scale == 0.0 || !moves(particles_.type[self]) || is_splash(self)) continue;
     const Vec<Dim> normal = surface_normal<Dim>(search_.near(), asymmetry_, particles_.free_surface, i);
     Vec<Dim> delta = scale * asymmetry_[self];
-    delta -= dot(delta, normal) * normal;
-    delta += scale * repulsion<Dim>(search_.near(), particles_.position, particles_.type,
-                                    config_.shifting.least_distance, config_.particles.spacing, i);
+    if (normal != Vec<Dim>{}) {
+      delta -= dot(delta, normal) * normal;
+      delta += scale * repulsion<Dim>(search_.near(), particles_.position, particles_.type,
+                                      config_.shifting.least_distance, config_.particles.spacing, i);
+    }
     if (const double length = norm(delta); length > largest) delta *= largest / length;
     displacement_[self] += delta;
     if (corrects)

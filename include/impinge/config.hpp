@@ -68,7 +68,7 @@ struct Config {
 
   struct {
     double coefficient = 0.0;       ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
-    double least_distance = 0.0;    ///< nearer pairs push each other apart [dp]; 0: none do; by scheme
+    double least_distance = 0.0;    ///< nearer pairs beside the surface drift apart [dp]; 0: none do; by scheme
     bool correct_velocity = false;  ///< take the velocity of the new place; by scheme
   } shifting;
 
