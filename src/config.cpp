@@ -125,7 +125,7 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
        "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
        "1 - gamma weighs the divergence"},
-      {IMPINGE_KEY(pressure.density_speed), every, "u_ref", from_to(0, 5), "0.5; paper: 0.0; 0.0 where gamma is given",
+      {IMPINGE_KEY(pressure.density_speed), every, "u_ref", from_to(0, 5), "0.25; paper: 0.0; 0.0 where gamma is given",
        "speed C at which density errors are corrected: gamma = (C u_ref dt/dp)^2, at most 1, with u_ref the largest "
        "fluid speed and at least sqrt(|g| dp); 0: pressure.gamma"},
       {IMPINGE_KEY(pressure.packing),
@@ -704,7 +704,7 @@ void CaseReader::derive_scheme() {
     if (!given(name)) value = by_scheme;
   };
   derive("walls.model", config_.walls.model, WallModel::mirror);
-  if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.5);
+  if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.25);
   derive("pressure.packing", config_.pressure.packing, true);
   derive("pressure.corrected_divergence", config_.pressure.corrected_divergence, true);
   derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);
