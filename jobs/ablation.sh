@@ -37,4 +37,6 @@ ablate 7-velocity-not-shifted shifting.correct_velocity=false
 ablate 8-gamma-0.01 pressure.density_speed=0
 ablate 9-collision-0.8 collision.distance=0.8
 ablate a-number-density pressure.packing=false
+ablate b-no-repulsion shifting.least_distance=0
+ablate c-new-velocity time.mean_velocity=false
 /usr/bin/python3 jobs/table.py "$root" | tee "$root/table.txt"
