@@ -125,9 +125,9 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
        "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
        "1 - gamma weighs the divergence"},
-      {IMPINGE_KEY(pressure.density_speed), every, "u_ref", from_to(0, 5), "0.25; paper: 0.0; 0.0 where gamma is given",
-       "speed C at which density errors are corrected: gamma = (C u_ref dt/dp)^2, at most 1, with u_ref the largest "
-       "fluid speed and at least sqrt(|g| dp); 0: pressure.gamma"},
+      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.25; paper: 0.0; 0.0 where gamma is given",
+       "speed at which density errors are corrected, over the largest fluid speed, but at least sqrt(|g| dp): gamma is "
+       "(speed dt/dp)^2, at most 1; 0: pressure.gamma"},
       {IMPINGE_KEY(pressure.packing),
        every,
        "",
@@ -174,7 +174,8 @@ const std::vector<Key>& keys() {
        "p = 0 half a spacing outside the surface particles instead of at them"},
 
       {IMPINGE_KEY(shifting.coefficient), every, "dp", from_to(0, 10), "1.0; paper: 0.0",
-       "particles drift by this times the asymmetry F and u_ref dt/dp (u_ref: see pressure.density_speed) each step, "
+       "particles drift by this times the asymmetry F and u_ref dt/dp each step (u_ref: the largest fluid speed, at "
+       "least sqrt(|g| dp)), "
        "at most by 0.1 dp, not through the free surface, spray not at all; 0: none do"},
       {IMPINGE_KEY(shifting.least_distance), every, "dp", from_to(0, 1), "0.9; paper: 0.0",
        "beside the free surface, fluid particles nearer than this drift apart, by the difference times "

@@ -233,10 +233,10 @@ void Simulation<Dim>::forget_pressure() {
   if (two_level_) two_level_->expire();
 }
 
-// u_max, but where gravity acts at least the speed of a fall from particle to particle: water at rest disorders, too.
+// Of a fall from particle to particle: water at rest disorders, too.
 template <int Dim>
-double Simulation<Dim>::reference_speed() const {
-  return std::max(report_.max_speed, std::sqrt(norm(gravity_) * config_.particles.spacing));
+double Simulation<Dim>::least_speed() const {
+  return std::sqrt(norm(gravity_) * config_.particles.spacing);
 }
 
 template <int Dim>
@@ -459,7 +459,7 @@ void Simulation<Dim>::find_sources() {
   const double n0 = near_sums_.number_density;
   const double rho = config_.fluid.density;
   const double dt = report_.dt;
-  const double speed = config_.pressure.density_speed * reference_speed();
+  const double speed = std::max(config_.pressure.density_speed * report_.max_speed, least_speed());
   const double gamma = config_.pressure.density_speed > 0.0
                            ? std::min(1.0, std::pow(speed * dt / config_.particles.spacing, 2))
                            : config_.pressure.gamma;
@@ -599,7 +599,7 @@ template <int Dim>
 void Simulation<Dim>::shift() {
   const LogStage log(stage(correcting));
   const double largest = largest_shift * config_.particles.spacing;
-  const double scale = config_.shifting.coefficient * reference_speed() * report_.dt;
+  const double scale = config_.shifting.coefficient * std::max(report_.max_speed, least_speed()) * report_.dt;
   const bool corrects = scale > 0.0 && config_.shifting.correct_velocity;
   if (corrects) domain_.refresh_directions(particles_.velocity, particles_.owned);
   velocity_change_.assign(static_cast<std::size_t>(particles_.owned), {});

@@ -42,7 +42,7 @@ struct Config {
 
   struct {
     double gamma = 0.01;                ///< weight of the density term in the PPE source, unless density_speed is set
-    double density_speed = 0.0;         ///< speed at which a density error is corrected [u_ref]; by scheme
+    double density_speed = 0.0;         ///< speed at which a density error is corrected [u_max]; by scheme
     bool corrected_divergence = false;  ///< divergence exact on linear velocities; by scheme
     bool packing = false;               ///< density errors by the packing, not by the number density; by scheme
     bool corrected_gradient = false;    ///< gradient by differences of pressure, but at the surface; by scheme

@@ -142,7 +142,7 @@ class Simulation {
   void share_wall_pressure();
   double crowding(int i) const;
   double base_pressure(int i) const;
-  double reference_speed() const;
+  double least_speed() const;
   double moving_share() const;
   bool is_splash(std::size_t i) const;
 

@@ -200,7 +200,7 @@ TEST(Config, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"columns\", "
                   "\"particles\""});
   EXPECT_EQ(mistakes_in("pressure.density_speed = 5.1"),
-            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_ref)"});
+            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_max)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
             Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
   EXPECT_EQ(mistakes_in("shifting.least_distance = 1.1"),
