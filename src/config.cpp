@@ -125,7 +125,7 @@ const std::vector<Key>& keys() {
       {IMPINGE_KEY(pressure.gamma), every, "", from_to(0, 1), "",
        "weight of the density term in the source of the pressure equation, unless pressure.density_speed is set; "
        "1 - gamma weighs the divergence"},
-      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.25; paper: 0.0; 0.0 where gamma is given",
+      {IMPINGE_KEY(pressure.density_speed), every, "u_max", from_to(0, 5), "0.35; paper: 0.0; 0.0 where gamma is given",
        "speed at which density errors are corrected, over the largest fluid speed, but at least sqrt(|g| dp): gamma is "
        "(speed dt/dp)^2, at most 1; 0: pressure.gamma"},
       {IMPINGE_KEY(pressure.packing),
@@ -705,7 +705,7 @@ void CaseReader::derive_scheme() {
     if (!given(name)) value = by_scheme;
   };
   derive("walls.model", config_.walls.model, WallModel::mirror);
-  if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.25);
+  if (!given("pressure.gamma")) derive("pressure.density_speed", config_.pressure.density_speed, 0.35);
   derive("pressure.packing", config_.pressure.packing, true);
   derive("pressure.corrected_divergence", config_.pressure.corrected_divergence, true);
   derive("pressure.corrected_gradient", config_.pressure.corrected_gradient, true);

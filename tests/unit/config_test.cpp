@@ -122,7 +122,7 @@ std::string scheme_value(const std::string& scheme, const std::string& key) {
 TEST(Config, TheSchemeSetsDefaults) {
   const auto check = [](const Config& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
-    EXPECT_EQ(c.pressure.density_speed, consistent ? 0.25 : 0.0);
+    EXPECT_EQ(c.pressure.density_speed, consistent ? 0.35 : 0.0);
     EXPECT_EQ(c.pressure.packing, consistent);
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
