@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "impinge/simulation.hpp"
+#include "mpi/gather.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -20,33 +20,22 @@ double distance_after_steps(const std::string& least_distance) {
   const Vec<2> left{{0.5 * config.tank.size[0] - 0.5 * dp, config.tank.fluid_height - 0.5 * dp}};
   const Vec<2> right{{left[0] + dp, left[1]}};
   Checkpoint<2> start = Simulation<2>(comm, config).checkpoint();
-  std::array<double, 2> ids{-1.0, -1.0};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(start.particles.owned); ++i) {
-    Vec<2>& position = start.particles.position[i];
-    if (norm(position - left) < 1e-6 * dp) {
-      ids[0] = static_cast<double>(start.particles.id[i]);
-      position[0] += 0.5 * dp;
-      start.searched_position[i] = position;
-    } else if (norm(position - right) < 1e-6 * dp) {
-      ids[1] = static_cast<double>(start.particles.id[i]);
-    }
+  std::int64_t first = -1, second = -1;
+  for (const auto& [id, position] : gather_by_id(comm, start.particles, start.particles.position)) {
+    if (norm(position - left) < 1e-6 * dp) first = id;
+    if (norm(position - right) < 1e-6 * dp) second = id;
   }
-  MPI_Allreduce(MPI_IN_PLACE, ids.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
-  EXPECT_GE(std::min(ids[0], ids[1]), 0.0);
+  EXPECT_GE(std::min(first, second), 0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(start.particles.owned); ++i) {
+    if (start.particles.id[i] != first) continue;
+    start.particles.position[i][0] += 0.5 * dp;
+    start.searched_position[i] = start.particles.position[i];
+  }
 
   Simulation<2> simulation(comm, config, &start);
   for (int n = 0; n < 10; ++n) simulation.step();
-  std::array<double, 4> places{};
-  const auto& particles = simulation.particles();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (static_cast<double>(particles.id[i]) != ids[k]) continue;
-      places[2 * k] = particles.position[i][0];
-      places[2 * k + 1] = particles.position[i][1];
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, places.data(), 4, MPI_DOUBLE, MPI_SUM, comm);
-  return std::hypot(places[2] - places[0], places[3] - places[1]) / dp;
+  const auto places = gather_by_id(comm, simulation.particles(), simulation.particles().position);
+  return norm(places.at(second) - places.at(first)) / dp;
 }
 
 TEST(Shifting, PartsParticlesThatAreTooNearBesideTheSurface) {
