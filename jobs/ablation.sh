@@ -27,7 +27,6 @@ ablate() {
     --set "time.dt=$(quotient 0.064 "$resolution")" "${words[@]}"
 }
 ablate 0-consistent
-ablate 1-walls-columns walls.model=columns
 ablate 2-walls-particles walls.model=particles
 ablate 3-divergence-plain pressure.corrected_divergence=false
 ablate 4-gradient-plain pressure.corrected_gradient=false

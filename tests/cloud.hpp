@@ -5,9 +5,9 @@
 #include <random>
 #include <tuple>
 
-#include "impinge/cell_grid.hpp"
-#include "impinge/neighbours.hpp"
-#include "impinge/particles.hpp"
+#include "impinge/particles/cell_grid.hpp"
+#include "impinge/particles/neighbours.hpp"
+#include "impinge/particles/particles.hpp"
 
 namespace impinge {
 

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "impinge/parallel.hpp"
-#include "impinge/snapshot.hpp"
+#include "impinge/io/snapshot.hpp"
+#include "impinge/parallel/exchange.hpp"
 
 namespace {
 

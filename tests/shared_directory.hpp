@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "impinge/output_error.hpp"
-#include "impinge/parallel.hpp"
+#include "impinge/core/errors.hpp"
+#include "impinge/parallel/exchange.hpp"
 
 namespace impinge {
 
@@ -32,12 +32,12 @@ class SharedDirectory : public testing::Test {
   std::string path_;
 };
 
-/// What an action's OutputError says; empty where there is none.
+/// What an action's FileError says; empty where there is none.
 template <class Action>
 std::string failure_of(Action action) {
   try {
     action();
-  } catch (const OutputError& error) {
+  } catch (const FileError& error) {
     return error.what();
   }
   return "";

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-#include "impinge/config.hpp"
+#include "impinge/programs/case.hpp"
 
 namespace impinge {
 
 /// A case file of input/, with settings as on the command line.
-inline Config shipped_case(const std::string& file, const std::vector<std::string>& settings = {}) {
+inline Case shipped_case(const std::string& file, const std::vector<std::string>& settings = {}) {
   const auto input = std::filesystem::path(__FILE__).parent_path() / "../input";
   return parse_case(load_case_files((input / file).string()), settings);
 }

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "cloud.hpp"
-#include "impinge/domain.hpp"
-#include "impinge/operators.hpp"
-#include "impinge/two_level.hpp"
+#include "impinge/method/operators.hpp"
+#include "impinge/method/pressure/two_level.hpp"
+#include "impinge/parallel/decomposition.hpp"
 
 namespace impinge {
 namespace {
@@ -24,7 +24,8 @@ class Block {
   explicit Block(int n)
       : particles(make_cloud<Dim>(cube(n), 0.1)),
         domain(MPI_COMM_SELF, box(n), {}, far_radius, Partitioner::metis),
-        search(domain.sorting_cells(), Domain<Dim>::cell_parts, KernelType::non_singular, near_radius, far_radius),
+        search(domain.sorting_cells(), Decomposition<Dim>::cell_parts, KernelType::non_singular, near_radius,
+               far_radius),
         solver(MPI_COMM_SELF, 1e-6),
         two_level(MPI_COMM_SELF, domain.cells()),
         near_sums(lattice_sums<Dim>(KernelType::non_singular, near_radius)),
@@ -63,14 +64,14 @@ class Block {
   void update() { two_level.update(solver.rows(), role, particles.position, domain.halo(), 0); }
 
   Particles<Dim> particles;
-  Domain<Dim> domain;
+  Decomposition<Dim> domain;
   NeighbourSearch<Dim> search;
   PressureSolver solver;
   TwoLevelPreconditioner<Dim> two_level;
   LatticeSums near_sums, far_sums;
   std::vector<PressureRole> role;
   std::vector<double> source;
-  std::vector<Vec<Dim>> gradient;
+  std::vector<Vector<Dim>> gradient;
   PC preconditioner = nullptr;
   PetscVector x, y;
 
@@ -130,7 +131,7 @@ void add_loops(Block<Dim>& block) {
       benchmark::DoNotOptimize(divergence<Dim>(block.search.near(), block.particles.position, block.particles.velocity,
                                                block.near_sums.number_density, i));
   });
-  add_loop("gradient", [&block, n, no_wall = std::vector<Vec<Dim>>(block.particles.type.size())] {
+  add_loop("gradient", [&block, n, no_wall = std::vector<Vector<Dim>>(block.particles.type.size())] {
     for (int i = 0; i < n; ++i)
       block.gradient[static_cast<std::size_t>(i)] =
           pressure_gradient<Dim>(block.search.near(), block.particles.position, block.particles.pressure,

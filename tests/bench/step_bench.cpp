@@ -12,9 +12,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "impinge/command_line.hpp"
-#include "impinge/run.hpp"
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
+#include "impinge/programs/command_line.hpp"
+#include "impinge/programs/run.hpp"
 
 namespace impinge {
 namespace {
@@ -102,7 +102,7 @@ std::array<Count, phase_names.size()> phase_counts() {
 }
 
 template <int Dim>
-nlohmann::ordered_json measure(MPI_Comm comm, const Config& config) {
+nlohmann::ordered_json measure(MPI_Comm comm, const Case& config) {
   const int warm_up = option("-bench_warm_up", 10);
   const int steps = option("-bench_steps", 30);
   PetscBool cold = PETSC_FALSE;
@@ -186,7 +186,7 @@ int run_program(int argc, char** argv) {
   try {
     const CommandLine line = parse_command_line({argv + 1, argv + argc});
     const PetscSession session(argv[0], line.petsc_arguments);
-    const Config config = parse_case(load_case_files_on_first_rank(comm, line.case_path), line.settings);
+    const Case config = parse_case(load_case_files_on_first_rank(comm, line.case_path), line.settings);
     const auto result = config.dimension == 3 ? measure<3>(comm, config) : measure<2>(comm, config);
     if (first) fmt::print("{}\n", result.dump(2));
     return 0;

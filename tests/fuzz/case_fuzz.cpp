@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "fuzz_directory.hpp"
-#include "impinge/config.hpp"
+#include "impinge/programs/case.hpp"
 
 namespace {
 
@@ -38,9 +38,9 @@ std::vector<std::string_view> parts_of(std::string_view text) {
   std::abort();
 }
 
-void expect_round_trip(const Config& config) {
+void expect_round_trip(const Case& config) {
   try {
-    const Config again = parse_case({{"resolved.toml", config.resolved_text}});
+    const Case again = parse_case({{"resolved.toml", config.resolved_text}});
     if (again.resolved_text != config.resolved_text)
       fail("another case comes back:\n" + config.resolved_text + "\n" + again.resolved_text);
   } catch (const InputError& error) {

@@ -1,4 +1,4 @@
-// Fuzzes the reader of snapshots: whatever the file, it gives a state or an OutputError, and leaves no HDF5 object
+// Fuzzes the reader of snapshots: whatever the file, it gives a state or an FileError, and leaves no HDF5 object
 // open.
 //
 // Bytes that begin as an HDF5 file does are a file. Checksums refuse nearly all such files, so other bytes are a list
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "fuzz_directory.hpp"
-#include "impinge/snapshot.hpp"
+#include "impinge/io/snapshot.hpp"
 
 namespace {
 
@@ -34,7 +34,7 @@ template <class Read>
 void expect_state_or_error(Read read) {
   try {
     read();
-  } catch (const OutputError&) {
+  } catch (const FileError&) {
   }
   if (H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) == 0) return;
   std::fprintf(stderr, "HDF5 objects are left open\n");

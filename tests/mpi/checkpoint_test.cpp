@@ -1,6 +1,6 @@
 // Checkpoints: a simulation that goes on from one is bitwise the one that never stopped; damaged files are refused.
 
-#include "impinge/checkpoint.hpp"
+#include "impinge/method/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "gather.hpp"
-#include "impinge/simulation.hpp"
-#include "impinge/snapshot.hpp"
+#include "impinge/io/snapshot.hpp"
+#include "impinge/method/simulation.hpp"
 #include "shared_directory.hpp"
 #include "shipped_case.hpp"
 
@@ -69,7 +69,7 @@ class Restart : public SharedDirectory {
  protected:
   /// Goes on from several steps, on as many ranks and on one.
   template <int Dim>
-  void expect_the_same_run(const Config& config, int steps) {
+  void expect_the_same_run(const Case& config, int steps) {
     Simulation<Dim> whole(MPI_COMM_WORLD, config);
     std::vector<std::string> files;
     for (int step = 0; step <= steps; ++step) {
@@ -95,7 +95,7 @@ class Restart : public SharedDirectory {
   }
 };
 
-Config jet_case(std::vector<std::string> settings) {
+Case jet_case(std::vector<std::string> settings) {
   settings.insert(settings.begin(), {"jet.width=0.4", "particles.spacing=0.04", "time.dt=1.6e-3"});
   return shipped_case("jet.toml", settings);
 }
@@ -125,13 +125,13 @@ TEST_F(Restart, ContinuesWithAnEmptyRank) {
 TEST_F(Restart, ContinuesAPeriodicViscousFlow) { expect_the_same_run<2>(shipped_case("shear-wave.toml", {tight}), 20); }
 
 TEST_F(Restart, ContinuesWithAnyPreconditioner) {
-  check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "hypre"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "hypre"));
   expect_the_same_run<2>(jet_case({tight}), 15);
-  check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
+  petsc_check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
 }
 
 TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
-  const Config config = jet_case({});
+  const Case config = jet_case({});
   Simulation<2> simulation(MPI_COMM_WORLD, config);
   const std::string whole = path("x_00000000.checkpoint");
   write(MPI_COMM_WORLD, whole, simulation);
@@ -158,14 +158,14 @@ TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
             std::string::npos);
 
   const auto from = read_checkpoint<2>(MPI_COMM_WORLD, whole);
-  const Config other = jet_case({"kernel.laplacian_radius=6.0"});
+  const Case other = jet_case({"kernel.laplacian_radius=6.0"});
   EXPECT_NE(failure_of([&] { Simulation<2>(MPI_COMM_WORLD, other, &from); }).find("background cells"),
             std::string::npos);
 }
 
 // A byte that changed anywhere is noticed, or it stands in a gap between what is read.
 TEST_F(Restart, NoticesEveryChangedByte) {
-  const Config config = jet_case({});
+  const Case config = jet_case({});
   Simulation<2> simulation(MPI_COMM_WORLD, config);
   for (int step = 0; step < 3; ++step) simulation.step();
   const std::string whole = path("x_00000003.checkpoint");
@@ -196,7 +196,7 @@ TEST_F(Restart, NoticesEveryChangedByte) {
       ASSERT_EQ(found.particles.type, expected.particles.type) << k;
       ASSERT_EQ(found.particles.id, expected.particles.id) << k;
       ASSERT_EQ(found.searched_position, expected.searched_position) << k;
-    } catch (const OutputError&) {
+    } catch (const FileError&) {
       ++noticed;
     }
   }

@@ -1,16 +1,16 @@
 // Partition, migration and halo: what a rank knows is what a single rank would know.
 
-#include "impinge/domain.hpp"
-
 #include <cmath>
 #include <set>
 
 #include "cloud.hpp"
 #include "dimensions.hpp"
 #include "gather.hpp"
-#include "impinge/lattice.hpp"
-#include "impinge/neighbours.hpp"
-#include "impinge/operators.hpp"
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/core/mpi.hpp"
+#include "impinge/method/operators.hpp"
+#include "impinge/parallel/decomposition.hpp"
+#include "impinge/particles/neighbours.hpp"
 
 namespace impinge {
 namespace {
@@ -46,7 +46,7 @@ Particles<Dim> share_of(const Particles<Dim>& all, MPI_Comm of = comm) {
 
 /// This rank's particles after a partition, with their halo.
 template <int Dim>
-Particles<Dim> settled_share(Domain<Dim>& domain, const Particles<Dim>& all, MPI_Comm of = comm) {
+Particles<Dim> settled_share(Decomposition<Dim>& domain, const Particles<Dim>& all, MPI_Comm of = comm) {
   Particles<Dim> particles = share_of(all, of);
   domain.partition(particles);
   domain.migrate(particles);
@@ -55,7 +55,7 @@ Particles<Dim> settled_share(Domain<Dim>& domain, const Particles<Dim>& all, MPI
 }
 
 template <int Dim>
-Domain<Dim> make_domain(Edge edge, Partitioner partitioner = Partitioner::metis, MPI_Comm of = comm) {
+Decomposition<Dim> make_domain(Edge edge, Partitioner partitioner = Partitioner::metis, MPI_Comm of = comm) {
   Box<Dim> box;
   for (int k = 0; k < Dim; ++k) box.high[k] = extent<Dim>()[static_cast<std::size_t>(k)];
   Edges<Dim> edges;
@@ -65,9 +65,9 @@ Domain<Dim> make_domain(Edge edge, Partitioner partitioner = Partitioner::metis,
 
 /// Calls use(position) for a position and its images next to the box, those at edges and corners among them.
 template <int Dim, class Use>
-void for_images(Edge edge, const Vec<Dim>& position, Use&& use) {
+void for_images(Edge edge, const Vector<Dim>& position, Use&& use) {
   for (int code = 0; code < (Dim == 2 ? 9 : 27); ++code) {
-    Vec<Dim> image = position;
+    Vector<Dim> image = position;
     int rest = code;
     for (int k = 0; k < Dim; ++k, rest /= 3) {
       const double length = extent<Dim>()[static_cast<std::size_t>(k)];
@@ -81,10 +81,10 @@ void for_images(Edge edge, const Vec<Dim>& position, Use&& use) {
 
 /// Number densities of the owned particles, for both radii.
 template <int Dim>
-std::array<std::vector<double>, 2> densities(const Domain<Dim>& domain, const Particles<Dim>& particles) {
+std::array<std::vector<double>, 2> densities(const Decomposition<Dim>& domain, const Particles<Dim>& particles) {
   const bool mirrored = domain.cells().edges()[0].low == Edge::mirror;
-  NeighbourSearch<Dim> search(domain.sorting_cells(), Domain<Dim>::cell_parts, KernelType::non_singular, near_radius,
-                              far_radius, mirrored);
+  NeighbourSearch<Dim> search(domain.sorting_cells(), Decomposition<Dim>::cell_parts, KernelType::non_singular,
+                              near_radius, far_radius, mirrored);
   search.search(particles);
   std::array<std::vector<double>, 2> density;
   for (auto& values : density) values.resize(static_cast<std::size_t>(particles.owned));
@@ -104,7 +104,7 @@ void expect_record(const ParticleRecord<Dim>& record, const Particles<Dim>& all)
 }
 
 template <int Dim>
-void expect_sorted(const Domain<Dim>& domain, const Particles<Dim>& particles) {
+void expect_sorted(const Decomposition<Dim>& domain, const Particles<Dim>& particles) {
   std::pair<int, std::int64_t> last{-1, -1};
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
     const std::pair<int, std::int64_t> here{domain.sorting_cells().cell(particles.position[i]), particles.id[i]};
@@ -192,7 +192,7 @@ TYPED_TEST(Domains, HaloCompletesTheDensityOfBruteForce) {
       const bool has_row = particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::wall;
       for (int j = 0; j < all.owned && has_row; ++j) {
         if (edge == Edge::mirror && all.type[static_cast<std::size_t>(j)] == ParticleType::wall) continue;
-        for_images<Dim>(edge, all.position[static_cast<std::size_t>(j)], [&](const Vec<Dim>& position) {
+        for_images<Dim>(edge, all.position[static_cast<std::size_t>(j)], [&](const Vector<Dim>& position) {
           const double r = norm(position - particles.position[i]);
           if (r == 0.0) return;
           near += NonSingularKernel::weight(r, near_radius);
@@ -227,10 +227,10 @@ TYPED_TEST(Domains, HaloCarriesFieldsRowsAndShiftedPositions) {
       const auto at = static_cast<std::size_t>(i);
       ParticleRecord<Dim> record = particles.record(i);
       EXPECT_EQ(rows[at], row_of.at(record.id));
-      const Vec<Dim> original = all.position[static_cast<std::size_t>(record.id)];
+      const Vector<Dim> original = all.position[static_cast<std::size_t>(record.id)];
       bool is_image = false;
       for_images<Dim>(edge, original,
-                      [&](const Vec<Dim>& image) { is_image |= norm(image - record.position) < 1e-12; });
+                      [&](const Vector<Dim>& image) { is_image |= norm(image - record.position) < 1e-12; });
       EXPECT_TRUE(is_image);
       if (edge == Edge::mirror)
         for (int k = 0; k < Dim; ++k)
@@ -243,7 +243,7 @@ TYPED_TEST(Domains, HaloCarriesFieldsRowsAndShiftedPositions) {
     // After a move of the owners the copies follow, and so do directions.
     const auto before = particles.position;
     const auto step = [](std::int64_t id, int k) { return 0.01 * std::sin(static_cast<double>(id + k)); };
-    std::vector<Vec<Dim>> direction(particles.position.size());
+    std::vector<Vector<Dim>> direction(particles.position.size());
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
       for (int k = 0; k < Dim; ++k) direction[i][k] = step(particles.id[i], k);
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) particles.position[i] += direction[i];

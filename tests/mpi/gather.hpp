@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "impinge/parallel.hpp"
-#include "impinge/particles.hpp"
+#include "impinge/parallel/exchange.hpp"
+#include "impinge/particles/particles.hpp"
 
 namespace impinge {
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <functional>
 
-#include "impinge/parallel.hpp"
-#include "impinge/snapshot.hpp"
+#include "impinge/io/snapshot.hpp"
+#include "impinge/parallel/exchange.hpp"
 
 namespace impinge {
 namespace {
@@ -53,7 +53,7 @@ class MalformedSnapshot : public testing::Test {
     try {
       Particles<2> particles;
       read_snapshot(MPI_COMM_WORLD, file(), particles);
-    } catch (const OutputError& error) {
+    } catch (const FileError& error) {
       failure = error.what();
     }
     EXPECT_EQ(failure, broadcast(MPI_COMM_WORLD, failure, 0));

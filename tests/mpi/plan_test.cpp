@@ -1,6 +1,6 @@
 // A plan for N ranks, made on one process, is what a run on N ranks has.
 
-#include "impinge/plan.hpp"
+#include "impinge/programs/plan.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "gather.hpp"
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -19,7 +19,7 @@ const MPI_Comm comm = MPI_COMM_WORLD;
 
 /// What this rank has at the start of a run.
 template <int Dim>
-void expect_plan_of_this_rank(const Config& config, MPI_Comm planners) {
+void expect_plan_of_this_rank(const Case& config, MPI_Comm planners) {
   const Plan plan = plan_run<Dim>(planners, config, ranks_of(comm));
   ASSERT_EQ(plan.ranks.size(), static_cast<std::size_t>(ranks_of(comm)));
   const RankPlan& here = plan.ranks[static_cast<std::size_t>(rank_of(comm))];
@@ -74,7 +74,7 @@ TEST(Plan, IsWhatARunHas) {
 TEST(Plan, IsTheSameOnEveryNumberOfProcesses) { expect_plan_of_this_rank<2>(shipped_case("jet60-quick.toml"), comm); }
 
 TEST(Plan, HoldsEveryParticleOnceWhereRanksAreMany) {
-  const Config config = shipped_case("jet60-quick.toml");
+  const Case config = shipped_case("jet60-quick.toml");
   const Simulation<2> simulation(MPI_COMM_SELF, config);
   for (const char* partitioner : {"metis", "ptscotch"}) {
     for (const int ranks : {1, 16, 1000}) {
@@ -100,7 +100,7 @@ TEST(Plan, BoundsTheTrafficOfAStep) {
   for (const char* scheme : {"consistent", "paper"}) {
     for (const char* viscosity : {"0", "1e-4"}) {
       for (const char* distance : {"0", "0.8"}) {
-        const Config config = shipped_case("jet60-quick.toml", {"jet.start=steady", fmt::format("scheme={}", scheme),
+        const Case config = shipped_case("jet60-quick.toml", {"jet.start=steady", fmt::format("scheme={}", scheme),
                                                                 fmt::format("fluid.viscosity={}", viscosity),
                                                                 fmt::format("collision.distance={}", distance)});
         const Plan plan = plan_run<2>(MPI_COMM_SELF, config, ranks_of(comm));
@@ -123,7 +123,7 @@ TEST(Plan, BoundsTheTrafficOfAStep) {
 }
 
 template <int Dim>
-void expect_memory(const Config& config) {
+void expect_memory(const Case& config) {
   Simulation<Dim> simulation(comm, config);
   for (int step = 0; step < 3; ++step) simulation.step();
   const Plan plan = plan_run<Dim>(comm, config, ranks_of(comm));

@@ -1,7 +1,5 @@
 // The pressure equation against a dense one built by brute force, on any number of ranks.
 
-#include "impinge/pressure.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,9 +9,11 @@
 
 #include "cloud.hpp"
 #include "gather.hpp"
-#include "impinge/domain.hpp"
-#include "impinge/lattice.hpp"
-#include "impinge/two_level.hpp"
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/core/mpi.hpp"
+#include "impinge/method/pressure/solver.hpp"
+#include "impinge/method/pressure/two_level.hpp"
+#include "impinge/parallel/decomposition.hpp"
 
 namespace impinge {
 namespace {
@@ -28,18 +28,18 @@ struct Problem {
   Particles<2> particles;
   std::vector<PressureRole> role;
   std::vector<double> source;
-  Vec<2> size;
+  Vector<2> size;
   Edge edge = Edge::open;  // of the box [0, size], on all sides
 
   std::size_t count() const { return role.size(); }
 
   /// Weights of particle j and its images in the row of particle i.
   double weight(std::size_t i, std::size_t j) const {
-    const Vec<2>& at = particles.position[j];
+    const Vector<2>& at = particles.position[j];
     double sum = 0.0;
     for (const double x : images(at[0], size[0]))
       for (const double y : images(at[1], size[1]))
-        sum += NonSingularKernel::weight(norm(Vec<2>{{x, y}} - particles.position[i]), radius);
+        sum += NonSingularKernel::weight(norm(Vector<2>{{x, y}} - particles.position[i]), radius);
     return sum;
   }
 
@@ -49,7 +49,7 @@ struct Problem {
     return {at};
   }
 
-  void add(const Vec<2>& position, PressureRole what, double strength) {
+  void add(const Vector<2>& position, PressureRole what, double strength) {
     particles.append({position, {}, 0.0, 0.0, particles.owned, ParticleType::fluid});
     role.push_back(what);
     source.push_back(strength);
@@ -57,7 +57,7 @@ struct Problem {
 };
 
 /// An irregular cloud of 24 x 14 particles; the source is irregular too.
-Problem cloud(const std::function<PressureRole(const Vec<2>&)>& role_at, Edge edge = Edge::open) {
+Problem cloud(const std::function<PressureRole(const Vector<2>&)>& role_at, Edge edge = Edge::open) {
   const std::array<int, 2> extent{24, 14};
   const Particles<2> points = make_cloud<2>(extent, 0.3);
   Problem problem;
@@ -69,13 +69,13 @@ Problem cloud(const std::function<PressureRole(const Vec<2>&)>& role_at, Edge ed
 }
 
 /// p = 0 above y = 12, a block that is not there, unknowns elsewhere.
-PressureRole basin(const Vec<2>& at) {
+PressureRole basin(const Vector<2>& at) {
   if (at[1] > 12.0) return PressureRole::zero;
   if (at[0] > 5.0 && at[0] < 9.0 && at[1] > 5.0 && at[1] < 8.0) return PressureRole::excluded;
   return PressureRole::unknown;
 }
 
-PressureRole all_unknown(const Vec<2>&) { return PressureRole::unknown; }
+PressureRole all_unknown(const Vector<2>&) { return PressureRole::unknown; }
 
 /// A problem on the ranks of a communicator.
 class Distributed {
@@ -87,14 +87,14 @@ class Distributed {
   Distributed(MPI_Comm comm, const Problem& problem, double tolerance = 1e-12)
       : comm_(comm),
         n_(problem.count()),
-        domain_(comm, {{}, problem.size}, edges_of(problem), radius, Partitioner::metis),
-        search_(domain_.sorting_cells(), Domain<2>::cell_parts, KernelType::non_singular, 2.1, radius),
+        decomposition_(comm, {{}, problem.size}, edges_of(problem), radius, Partitioner::metis),
+        search_(decomposition_.sorting_cells(), Decomposition<2>::cell_parts, KernelType::non_singular, 2.1, radius),
         solver_(comm, tolerance) {
     for_share(static_cast<std::int64_t>(n_), rank_of(comm), ranks_of(comm),
               [&](std::int64_t k) { particles_.append(problem.particles.record(static_cast<int>(k))); });
-    domain_.partition(particles_);
-    EXPECT_EQ(domain_.migrate(particles_), 0);
-    domain_.build_halo(particles_);
+    decomposition_.partition(particles_);
+    EXPECT_EQ(decomposition_.migrate(particles_), 0);
+    decomposition_.build_halo(particles_);
     search_.search(particles_);
     for (const auto id : particles_.id) role_.push_back(problem.role[static_cast<std::size_t>(id)]);
     assemble(problem.source);
@@ -107,18 +107,18 @@ class Distributed {
       source_.push_back(source[static_cast<std::size_t>(particles_.id[static_cast<std::size_t>(i)])]);
     solver_.assemble({.for_rows = [&](const auto& use) { search_.for_far_rows(use); },
                       .role = role_,
-                      .row = domain_.rows(),
+                      .row = decomposition_.rows(),
                       .source = source_,
                       .factor = factor,
                       .n0 = n0,
                       .usual_pairs = 48},
-                     domain_.halo());
+                     decomposition_.halo());
     if (!solver_.is_two_level()) return;
     if (!two_level_) {
-      two_level_.emplace(comm_, domain_.cells());
-      two_level_->set_owners(domain_.owners());
+      two_level_.emplace(comm_, decomposition_.cells());
+      two_level_->set_owners(decomposition_.owners());
     }
-    two_level_->update(solver_.rows(), role_, particles_.position, domain_.halo(), 0);
+    two_level_->update(solver_.rows(), role_, particles_.position, decomposition_.halo(), 0);
     two_level_->attach(solver_.preconditioner());
   }
 
@@ -137,7 +137,7 @@ class Distributed {
 
   /// The matrix by ids, dense, on every rank.
   std::vector<double> matrix() const {
-    const auto rows = domain_.rows();
+    const auto rows = decomposition_.rows();
     const std::vector<PetscInt> own_rows(rows.begin(), rows.begin() + particles_.owned);
     std::vector<std::size_t> id_of(n_);
     for (const auto& [id, row] : gather_by_id(comm_, particles_, own_rows))
@@ -148,10 +148,10 @@ class Distributed {
       PetscInt entries = 0;
       const PetscInt* columns = nullptr;
       const double* values = nullptr;
-      check(MatGetRow(whole, row, &entries, &columns, &values));
+      petsc_check(MatGetRow(whole, row, &entries, &columns, &values));
       for (PetscInt k = 0; k < entries; ++k)
         dense[id_of[static_cast<std::size_t>(row)] * n_ + id_of[static_cast<std::size_t>(columns[k])]] += values[k];
-      check(MatRestoreRow(whole, row, &entries, &columns, &values));
+      petsc_check(MatRestoreRow(whole, row, &entries, &columns, &values));
     }
     MPI_Allreduce(MPI_IN_PLACE, dense.data(), static_cast<int>(dense.size()), MPI_DOUBLE, MPI_SUM, comm_);
     return dense;
@@ -159,18 +159,18 @@ class Distributed {
 
   /// Largest difference of a component of the solver's product with some vector and the whole matrix's.
   double product_difference() const {
-    const PetscMatrix whole = solver_.whole_matrix(domain_.rows());
+    const PetscMatrix whole = solver_.whole_matrix(decomposition_.rows());
     PetscVector x, product, expected;
-    check(MatCreateVecs(whole, x.address(), product.address()));
-    check(VecDuplicate(product, expected.address()));
-    check(VecSetRandom(x, nullptr));
-    check(MatMult(solver_.matrix(), x, product));
-    check(MatMult(whole, x, expected));
-    check(VecAXPY(product, -1.0, expected));
+    petsc_check(MatCreateVecs(whole, x.address(), product.address()));
+    petsc_check(VecDuplicate(product, expected.address()));
+    petsc_check(VecSetRandom(x, nullptr));
+    petsc_check(MatMult(solver_.matrix(), x, product));
+    petsc_check(MatMult(whole, x, expected));
+    petsc_check(VecAXPY(product, -1.0, expected));
     double difference = 0.0;
-    check(VecNorm(product, NORM_INFINITY, &difference));
+    petsc_check(VecNorm(product, NORM_INFINITY, &difference));
     PetscBool known = PETSC_FALSE, definite = PETSC_FALSE;
-    check(MatIsSPDKnown(whole, &known, &definite));
+    petsc_check(MatIsSPDKnown(whole, &known, &definite));
     EXPECT_TRUE(known && definite);
     return difference;
   }
@@ -178,7 +178,7 @@ class Distributed {
  private:
   MPI_Comm comm_;
   std::size_t n_;
-  Domain<2> domain_;
+  Decomposition<2> decomposition_;
   NeighbourSearch<2> search_;
   PressureSolver solver_;
   std::optional<TwoLevelPreconditioner<2>> two_level_;
@@ -385,7 +385,7 @@ TEST(Pressure, OfABoxWithoutFreeSurfaceIsFixedByItsLowestValue) {
 
 // A C of unknowns, spread over the ranks: a pocket until the tip of one arm gets p = 0.
 TEST(Pressure, FindsWindingPockets) {
-  const auto snake = [](const Vec<2>& at) {
+  const auto snake = [](const Vector<2>& at) {
     if (at[1] > 4.5 && at[1] < 9.5 && at[0] > 5.0) return PressureRole::excluded;
     return PressureRole::unknown;
   };
@@ -397,7 +397,7 @@ TEST(Pressure, FindsWindingPockets) {
   expect_solution(closed, system.pressure(), [&](std::size_t i) { return closed.role[i] == PressureRole::unknown; });
 
   const Problem open =
-      cloud([&](const Vec<2>& at) { return at[0] > 23.0 && at[1] < 4.5 ? PressureRole::zero : snake(at); });
+      cloud([&](const Vector<2>& at) { return at[0] > 23.0 && at[1] < 4.5 ? PressureRole::zero : snake(at); });
   Distributed anchored(MPI_COMM_WORLD, open);
   EXPECT_EQ(anchored.solve().pockets, 0);
   expect_solution(open, anchored.pressure());
@@ -417,7 +417,7 @@ TEST(Pressure, NeedsNoRowsOnEveryRank) {
 
 TEST(Pressure, WithoutUnknownsIsZero) {
   const Problem problem =
-      cloud([](const Vec<2>& at) { return at[0] < 9.0 ? PressureRole::zero : PressureRole::excluded; });
+      cloud([](const Vector<2>& at) { return at[0] < 9.0 ? PressureRole::zero : PressureRole::excluded; });
   Distributed system(MPI_COMM_WORLD, problem);
   EXPECT_EQ(system.solve().failure, "");
   EXPECT_EQ(largest(system.pressure()), 0.0);
@@ -436,9 +436,9 @@ TEST(Pressure, ReportsASourceThatIsNotANumber) {
 
 TEST(Pressure, ReportsNonConvergenceOnEveryRank) {
   const Problem problem = cloud(basin);
-  check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
   Distributed system(MPI_COMM_WORLD, problem);
-  check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
+  petsc_check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
   const PressureReport report = system.solve();
   EXPECT_FALSE(any_rank(MPI_COMM_WORLD, report.failure.empty()));
   EXPECT_NE(report.failure.find("DIVERGED_ITS"), std::string::npos) << report.failure;
@@ -448,9 +448,9 @@ TEST(Pressure, ReportsNonConvergenceOnEveryRank) {
 TEST(Pressure, ObeysTheOptionsDatabase) {
   const Problem problem = cloud(basin);
   for (const char* preconditioner : {"jacobi", "gamg", "bjacobi", "hypre"}) {
-    check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", preconditioner));
+    petsc_check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", preconditioner));
     Distributed system(MPI_COMM_WORLD, problem);
-    check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
+    petsc_check(PetscOptionsClearValue(nullptr, "-ppe_pc_type"));
     EXPECT_EQ(system.solve().failure, "") << preconditioner;
     expect_solution(problem, system.pressure());
   }

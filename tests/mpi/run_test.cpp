@@ -8,7 +8,7 @@
 #include <set>
 
 #include "gather.hpp"
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -17,7 +17,7 @@ namespace {
 constexpr const char* tight = "pressure.tolerance=1e-12";
 
 /// The 60 degree jet at H/dp = 10.
-Config jet_case(const std::vector<std::string>& settings = {}) {
+Case jet_case(const std::vector<std::string>& settings = {}) {
   std::vector<std::string> all{tight};
   all.insert(all.end(), settings.begin(), settings.end());
   return parse_case({{"jet.toml", R"(geometry = "jet"
@@ -32,7 +32,7 @@ pressure.gamma = 0.01
 /// What the comparison looks at, by id.
 template <int Dim>
 struct State {
-  std::map<std::int64_t, Vec<Dim>> position;
+  std::map<std::int64_t, Vector<Dim>> position;
   std::map<std::int64_t, double> number_density;
   std::map<std::int64_t, std::uint8_t> free_surface;
   std::map<std::int64_t, ParticleType> type;
@@ -45,7 +45,7 @@ struct State {
 };
 
 template <int Dim>
-void expect_the_same_run(const Config& config, int steps) {
+void expect_the_same_run(const Case& config, int steps) {
   const double spacing = config.particles.spacing;
   Simulation<Dim> here(MPI_COMM_WORLD, config), alone(MPI_COMM_SELF, config);
   {
@@ -107,7 +107,7 @@ TEST(Run, IsThatOfASingleRankWithTheSingularKernel) {
 }
 
 TEST(Run, IsThatOfASingleRankWhereItIsRepartitioned) {
-  const Config config = jet_case({"parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"});
+  const Case config = jet_case({"parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"});
   // That it happens: wall particles do not move, so only a new partition changes their owners.
   Simulation<2> simulation(MPI_COMM_WORLD, config);
   const auto own_walls = [&] {
@@ -128,7 +128,7 @@ TEST(Run, ShearWaveIsThatOfASingleRank) { expect_the_same_run<2>(shipped_case("s
 
 // Particles enter and leave; nothing is lost on the way.
 TEST(Run, BalancesParticlesAtTheInletAndTheOutlets) {
-  const Config config = jet_case({"plate.begin=-0.4", "plate.end=0.6", "pressure.tolerance=1e-6"});
+  const Case config = jet_case({"plate.begin=-0.4", "plate.end=0.6", "pressure.tolerance=1e-6"});
   Simulation<2> simulation(MPI_COMM_WORLD, config);
   const std::int64_t at_start = simulation.report().in;
   EXPECT_EQ(simulation.report().fluid, at_start);
@@ -162,7 +162,7 @@ TEST(Run, StepIsBoundedByTheCourantNumberAndGrowsSlowly) {
 }
 
 /// The failure of a run, on every rank.
-SolveError failure_of(const Config& config) {
+SolveError failure_of(const Case& config) {
   Simulation<2> simulation(MPI_COMM_WORLD, config);
   try {
     for (int step = 0; step < 50; ++step) simulation.step();
@@ -180,9 +180,9 @@ TEST(Run, EndsWhereTheSpeedPassesItsBound) {
 }
 
 TEST(Run, EndsWhereThePressureDoesNotConverge) {
-  check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
   const SolveError error = failure_of(jet_case());
-  check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
+  petsc_check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
   EXPECT_EQ(error.phase(), "pressure");
   EXPECT_NE(std::string(error.what()).find("DIVERGED_ITS"), std::string::npos) << error.what();
 }
@@ -193,14 +193,14 @@ int failures_to_come = 0;
 class FlakyPreconditioner {
  public:
   FlakyPreconditioner() {
-    check(PCRegister("flaky", [](PC preconditioner) -> PetscErrorCode {
+    petsc_check(PCRegister("flaky", [](PC preconditioner) -> PetscErrorCode {
       if (failures_to_come == 0) return PCSetType(preconditioner, PCJACOBI);
       --failures_to_come;
       PetscCall(PCSetType(preconditioner, PCSHELL));
       return PCShellSetApply(preconditioner,
                              [](PC, ::Vec, ::Vec result) -> PetscErrorCode { return VecSet(result, std::nan("")); });
     }));
-    check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "flaky"));
+    petsc_check(PetscOptionsSetValue(nullptr, "-ppe_pc_type", "flaky"));
   }
   ~FlakyPreconditioner() {
     failures_to_come = 0;

@@ -1,6 +1,6 @@
 // Snapshots: what is written on any number of ranks is read on any other; damaged files are refused.
 
-#include "impinge/snapshot.hpp"
+#include "impinge/io/snapshot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <limits>
 #include <map>
 
-#include "impinge/parallel.hpp"
+#include "impinge/parallel/exchange.hpp"
 #include "shared_directory.hpp"
 
 namespace impinge {
@@ -166,8 +166,8 @@ TEST_F(SharedDirectory, ListsSnapshotsByStep) {
   EXPECT_EQ(list_partial_files(path_, "b").size(), 0u);
   EXPECT_EQ(checkpoint_path("out", "a", 10), "out/a_00000010.checkpoint");
   EXPECT_EQ(name_and_step("out/a_b_00000010.checkpoint"), std::pair(std::string("a_b"), std::int64_t{10}));
-  EXPECT_THROW(name_and_step("a_history.csv"), OutputError);
-  EXPECT_THROW(list_snapshots(path("nowhere")), OutputError);
+  EXPECT_THROW(name_and_step("a_history.csv"), FileError);
+  EXPECT_THROW(list_snapshots(path("nowhere")), FileError);
 }
 
 }  // namespace

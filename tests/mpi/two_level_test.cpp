@@ -1,6 +1,6 @@
 // The two-level preconditioner: its algebra, its life cycle, and iterations that do not depend on the ranks.
 
-#include "impinge/two_level.hpp"
+#include "impinge/method/pressure/two_level.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,10 @@
 
 #include "cloud.hpp"
 #include "dimensions.hpp"
-#include "impinge/domain.hpp"
-#include "impinge/kernel.hpp"
-#include "impinge/lattice.hpp"
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/core/mpi.hpp"
+#include "impinge/parallel/decomposition.hpp"
+#include "impinge/particles/kernel.hpp"
 
 namespace impinge {
 namespace {
@@ -23,7 +24,7 @@ constexpr double edge = 1.001 * radius;  // of a background cell
 /// The option of the database while it lives.
 class Option {
  public:
-  Option(const char* name, const char* value) : name_(name) { check(PetscOptionsSetValue(nullptr, name, value)); }
+  Option(const char* name, const char* value) : name_(name) { petsc_check(PetscOptionsSetValue(nullptr, name, value)); }
   ~Option() { PetscOptionsClearValue(nullptr, name_); }
 
  private:
@@ -34,13 +35,13 @@ class Option {
 template <int Dim>
 class Cloud {
  public:
-  Cloud(MPI_Comm comm, const std::array<int, Dim>& cells, const std::function<PressureRole(const Vec<Dim>&)>& role_at,
-        Edge lower_edges = Edge::open)
+  Cloud(MPI_Comm comm, const std::array<int, Dim>& cells,
+        const std::function<PressureRole(const Vector<Dim>&)>& role_at, Edge lower_edges = Edge::open)
       : comm_(comm),
-        domain_(comm, box(cells), edges(lower_edges), radius, Partitioner::metis),
-        search_(domain_.sorting_cells(), Domain<Dim>::cell_parts, KernelType::non_singular, 2.1, radius),
+        decomposition_(comm, box(cells), edges(lower_edges), radius, Partitioner::metis),
+        search_(decomposition_.sorting_cells(), Decomposition<Dim>::cell_parts, KernelType::non_singular, 2.1, radius),
         solver_(comm, 1e-8),
-        two_level_(comm, domain_.cells()) {
+        two_level_(comm, decomposition_.cells()) {
     std::array<int, Dim> extent;
     for (std::size_t k = 0; k < Dim; ++k) extent[k] = static_cast<int>((cells[k] - 1) * radius);
     const Particles<Dim> points = make_cloud<Dim>(extent, 0.2);
@@ -49,31 +50,31 @@ class Cloud {
       for (int axis = 0; axis < Dim; ++axis) record.position[axis] += 0.5 * edge;
       particles_.append(record);
     });
-    domain_.partition(particles_);
-    EXPECT_EQ(domain_.migrate(particles_), 0);
-    domain_.build_halo(particles_);
+    decomposition_.partition(particles_);
+    EXPECT_EQ(decomposition_.migrate(particles_), 0);
+    decomposition_.build_halo(particles_);
     search_.search(particles_);
     for (const auto& position : particles_.position) role_.push_back(role_at(position));
     const LatticeSums sums = lattice_sums<Dim>(KernelType::non_singular, radius);
     source_.assign(particles_.pressure.begin(), particles_.pressure.begin() + particles_.owned);
     solver_.assemble({.for_rows = [&](const auto& use) { search_.for_far_rows(use); },
                       .role = role_,
-                      .row = domain_.rows(),
+                      .row = decomposition_.rows(),
                       .source = source_,
                       .factor = 2.0 * Dim / (sums.number_density * sums.lambda),
                       .n0 = sums.number_density,
                       .usual_pairs = sums.neighbours},
-                     domain_.halo());
-    two_level_.set_owners(domain_.owners());
+                     decomposition_.halo());
+    two_level_.set_owners(decomposition_.owners());
   }
 
   TwoLevelPreconditioner<Dim>& two_level() { return two_level_; }
-  Domain<Dim>& domain() { return domain_; }
+  Decomposition<Dim>& domain() { return decomposition_; }
   const Particles<Dim>& particles() const { return particles_; }
   PressureRole role(std::size_t i) const { return role_[i]; }
 
   void update(int iterations) {
-    two_level_.update(solver_.rows(), role_, particles_.position, domain_.halo(), iterations);
+    two_level_.update(solver_.rows(), role_, particles_.position, decomposition_.halo(), iterations);
   }
 
   PressureReport solve() {
@@ -84,19 +85,19 @@ class Cloud {
 
   std::vector<double> times_matrix(std::vector<double> x) const {
     std::vector<double> result(x.size());
-    check(MatMult(solver_.matrix(), view(x), view(result)));
+    petsc_check(MatMult(solver_.matrix(), view(x), view(result)));
     return result;
   }
 
   std::vector<double> preconditioned(std::vector<double> x) {
     PC shell;
-    check(PCCreate(comm_, &shell));
-    check(PCSetType(shell, PCSHELL));
-    check(PCSetOperators(shell, solver_.matrix(), solver_.matrix()));
+    petsc_check(PCCreate(comm_, &shell));
+    petsc_check(PCSetType(shell, PCSHELL));
+    petsc_check(PCSetOperators(shell, solver_.matrix(), solver_.matrix()));
     two_level_.attach(shell);
     std::vector<double> result(x.size());
-    check(PCApply(shell, view(x), view(result)));
-    check(PCDestroy(&shell));
+    petsc_check(PCApply(shell, view(x), view(result)));
+    petsc_check(PCDestroy(&shell));
     return result;
   }
 
@@ -123,13 +124,13 @@ class Cloud {
 
   PetscVector view(std::vector<double>& x) const {
     PetscVector vector;
-    check(
+    petsc_check(
         VecCreateMPIWithArray(comm_, 1, static_cast<PetscInt>(x.size()), PETSC_DETERMINE, x.data(), vector.address()));
     return vector;
   }
 
   MPI_Comm comm_;
-  Domain<Dim> domain_;
+  Decomposition<Dim> decomposition_;
   NeighbourSearch<Dim> search_;
   PressureSolver solver_;
   TwoLevelPreconditioner<Dim> two_level_;
@@ -147,13 +148,13 @@ std::array<int, Dim> cells(int first, int others) {
 }
 
 template <int Dim>
-PressureRole all_unknown(const Vec<Dim>&) {
+PressureRole all_unknown(const Vector<Dim>&) {
   return PressureRole::unknown;
 }
 
 /// p = 0 in the uppermost rows, a hole, unknowns elsewhere.
 template <int Dim>
-PressureRole basin(const Vec<Dim>& at) {
+PressureRole basin(const Vector<Dim>& at) {
   if (at[0] < 3.5) return PressureRole::zero;
   return std::abs(at[0] - 9.0) < 1.5 && std::abs(at[1] - 6.0) < 2.5 ? PressureRole::excluded : PressureRole::unknown;
 }
@@ -172,7 +173,7 @@ TYPED_TEST(TwoLevel, IsExactForLinearFields) {
     cloud.update(0);
     std::vector<double> linear;
     for (int i = 0; i < cloud.particles().owned; ++i) {
-      const Vec<Dim>& at = cloud.particles().position[static_cast<std::size_t>(i)];
+      const Vector<Dim>& at = cloud.particles().position[static_cast<std::size_t>(i)];
       linear.push_back(2.0 - at[0] + 3.0 * at[Dim - 1]);
     }
     const auto residual = cloud.times_matrix(linear);

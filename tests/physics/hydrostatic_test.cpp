@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(All, Hydrostatic, testing::Values("consistent", "paper"
                          [](const auto& test) { return test.param; });
 
 TEST_P(Hydrostatic, ColumnStaysAtRestUnderItsWeight) {
-  const Config config = shipped_case("hydrostatic.toml", {"scheme=" + GetParam()});
+  const Case config = shipped_case("hydrostatic.toml", {"scheme=" + GetParam()});
   const bool consistent = config.scheme == Scheme::consistent;
   const double dp = config.particles.spacing;
   const double width = config.tank.size[0];
@@ -40,7 +40,7 @@ TEST_P(Hydrostatic, ColumnStaysAtRestUnderItsWeight) {
     const StepReport& report = simulation.report();
     largest_speed = std::max(largest_speed, report.max_speed);
     worst_floor = std::max(worst_floor, std::abs(report.floor_force / width / (weight * height) - 1.0));
-    if (report.time < config.output.average_start) continue;
+    if (report.time < config.average_start) continue;
     largest_speed_later = std::max(largest_speed_later, report.max_speed);
     std::vector<double> sums(2 * n_rows, 0.0);
     double top = 0.0;
@@ -106,7 +106,7 @@ TEST_P(Hydrostatic, ColumnStaysAtRestUnderItsWeight) {
 TEST(FreeFall, IsAParabolaWithTheMeanVelocity) {
   constexpr double gravity = 9.81;
   for (const bool mean : {true, false}) {
-    const Config config =
+    const Case config =
         shipped_case("hydrostatic.toml", {"fluid.gravity=[0, 9.81]", fmt::format("time.mean_velocity={}", mean)});
     Simulation<2> simulation(comm, config);
     double late = 0.0;  // of the place, where the whole new velocity moves it

@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "impinge/analytic_jet.hpp"
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
+#include "impinge/scenes/analytic_jet.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(All, Jet,
 
 TEST_P(Jet, HoldsItsSteadyStateAtLowResolution) {
   const Bounds bounds = GetParam();
-  const Config config = shipped_case("jet.toml", {fmt::format("scheme={}", bounds.scheme), "particles.spacing=0.04",
+  const Case config = shipped_case("jet.toml", {fmt::format("scheme={}", bounds.scheme), "particles.spacing=0.04",
                                                   "time.dt=1.6e-3", "jet.start=\"steady\""});
   const double width = config.jet.width;
   const AnalyticJet analytic(width, config.jet.speed, config.fluid.density,

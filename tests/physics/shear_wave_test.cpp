@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShearWave, testing::Values("consistent", "paper"),
                          [](const auto& test) { return test.param; });
 
 TEST_P(ShearWave, DecaysAtTheAnalyticRate) {
-  const Config config = shipped_case("shear-wave.toml", {"scheme=" + GetParam()});
+  const Case config = shipped_case("shear-wave.toml", {"scheme=" + GetParam()});
   Simulation<2> simulation(comm, config);
   while (simulation.report().time < config.time.end - 1e-9) simulation.step();
 
@@ -30,7 +30,7 @@ TEST_P(ShearWave, DecaysAtTheAnalyticRate) {
   double projection = 0.0, square = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
     const double wave = std::sin(k * particles.position[i][1]);
-    const Vec<2> velocity = particles.velocity[i];
+    const Vector<2> velocity = particles.velocity[i];
     projection += 2.0 * velocity[0] * wave;
     square += std::pow(velocity[0] - amplitude * wave, 2) + std::pow(velocity[1], 2);
   }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "impinge/simulation.hpp"
+#include "impinge/method/simulation.hpp"
 #include "mpi/gather.hpp"
 #include "shipped_case.hpp"
 
@@ -15,10 +15,10 @@ const MPI_Comm comm = MPI_COMM_WORLD;
 
 /// Distance [dp], after ten steps of a tank at rest, of two particles of the surface that started half of dp apart.
 double distance_after_steps(const std::string& least_distance) {
-  const Config config = shipped_case("hydrostatic.toml", {"shifting.least_distance=" + least_distance});
+  const Case config = shipped_case("hydrostatic.toml", {"shifting.least_distance=" + least_distance});
   const double dp = config.particles.spacing;
-  const Vec<2> left{{0.5 * config.tank.size[0] - 0.5 * dp, config.tank.fluid_height - 0.5 * dp}};
-  const Vec<2> right{{left[0] + dp, left[1]}};
+  const Vector<2> left{{0.5 * config.tank.size[0] - 0.5 * dp, config.tank.fluid_height - 0.5 * dp}};
+  const Vector<2> right{{left[0] + dp, left[1]}};
   Checkpoint<2> start = Simulation<2>(comm, config).checkpoint();
   std::int64_t first = -1, second = -1;
   for (const auto& [id, position] : gather_by_id(comm, start.particles, start.particles.position)) {

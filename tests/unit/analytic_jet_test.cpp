@@ -1,6 +1,6 @@
 // The analytic jet against the integral balances, the table of independently computed figures and itself.
 
-#include "impinge/analytic_jet.hpp"
+#include "impinge/scenes/analytic_jet.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,14 +20,14 @@ constexpr double width = 0.4, speed = 1.5, density = 1000.0;
 AnalyticJet jet_at(double degrees) { return {width, speed, density, degrees * degree}; }
 
 /// Points of the fluid, spread over the hodograph and over the far parts of jet and sheets.
-std::vector<Vec<2>> fluid_points(const AnalyticJet& jet, int count) {
+std::vector<Vector<2>> fluid_points(const AnalyticJet& jet, int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Vec<2>> points;
+  std::vector<Vector<2>> points;
   while (static_cast<int>(points.size()) < count) {
-    const Vec<2> p{{(12.0 * uniform(random) - 6.0) * width, 4.0 * uniform(random) * width}};
+    const Vector<2> p{{(12.0 * uniform(random) - 6.0) * width, 4.0 * uniform(random) * width}};
     if (jet.contains(p)) points.push_back(p);
-    const Vec<2> film{{p[0], jet.sheet_thickness(p[0] > 0.0 ? Side::h1 : Side::h2) * uniform(random)}};
+    const Vector<2> film{{p[0], jet.sheet_thickness(p[0] > 0.0 ? Side::h1 : Side::h2) * uniform(random)}};
     if (jet.contains(film)) points.push_back(film);
     points.push_back(jet.position(std::polar(std::sqrt(uniform(random)), std::numbers::pi * uniform(random))));
   }
@@ -86,7 +86,7 @@ TEST_P(AnalyticJetAngles, PlatePositionIsTheRealFormula) {
 }
 
 TEST_P(AnalyticJetAngles, NewtonFindsEveryPointOfTheFluid) {
-  for (const Vec<2>& p : fluid_points(jet, 20000)) {
+  for (const Vector<2>& p : fluid_points(jet, 20000)) {
     const auto zeta = jet.hodograph(p);
     ASSERT_TRUE(zeta.has_value()) << p[0] << " " << p[1];
     EXPECT_LE(std::abs(*zeta), 1.0 + 1e-12);
@@ -101,9 +101,9 @@ TEST_P(AnalyticJetAngles, NewtonFindsEveryPointOfTheFluid) {
 
 TEST_P(AnalyticJetAngles, InteriorObeysBernoulliContinuityAndIrrotationality) {
   const double step = 1e-4 * jet.sheet_thickness(Side::h2);
-  const Vec<2> right{{step, 0.0}}, up{{0.0, step}};
+  const Vector<2> right{{step, 0.0}}, up{{0.0, step}};
   int checked = 0;
-  for (const Vec<2>& p : fluid_points(jet, 2000)) {
+  for (const Vector<2>& p : fluid_points(jet, 2000)) {
     const auto centre = jet.state(p), east = jet.state(p + right), west = jet.state(p - right),
                north = jet.state(p + up), south = jet.state(p - up);
     if (!(centre && east && west && north && south)) continue;
@@ -121,17 +121,17 @@ TEST_P(AnalyticJetAngles, InteriorObeysBernoulliContinuityAndIrrotationality) {
 TEST_P(AnalyticJetAngles, FreeSurfaceIsAStreamlineOfSpeedUAtZeroPressure) {
   for (double theta = 0.01; theta < 3.14; theta += 0.01) {
     if (std::abs(theta - GetParam() * degree) < 1e-3) continue;
-    const Vec<2> p = jet.surface_point(theta);
-    const Vec<2> direct = jet.position(std::polar(1.0, theta));
+    const Vector<2> p = jet.surface_point(theta);
+    const Vector<2> direct = jet.position(std::polar(1.0, theta));
     EXPECT_LT(norm(p - direct), 1e-12);
     const auto nearest = jet.nearest_surface(p);
     EXPECT_NEAR(nearest.depth, 0.0, 1e-9);
     EXPECT_NEAR(norm(nearest.velocity), speed, 1e-12);
     EXPECT_NEAR(nearest.velocity[0], speed * std::cos(theta), 1e-6);
-    const Vec<2> normal{{std::sin(theta), std::cos(theta)}};  // out of the fluid
+    const Vector<2> normal{{std::sin(theta), std::cos(theta)}};  // out of the fluid
     const double side = theta < GetParam() * degree ? 1.0 : -1.0;
     const double small = 1e-3 * jet.sheet_thickness(Side::h2);
-    const Vec<2> inside = p - (side * small) * normal, outside = p + (side * small) * normal;
+    const Vector<2> inside = p - (side * small) * normal, outside = p + (side * small) * normal;
     ASSERT_TRUE(jet.contains(inside));
     EXPECT_FALSE(jet.contains(outside));
     EXPECT_FALSE(jet.state(outside).has_value());
@@ -148,8 +148,8 @@ TEST_P(AnalyticJetAngles, SurfaceLinesReachTheirEndsAndTheFarThickness) {
     EXPECT_NEAR(line.front()[0], side == Side::h1 ? length : -length, 1e-9);
     EXPECT_NEAR(line.front()[1], jet.sheet_thickness(side), 1e-3 * jet.sheet_thickness(side));
     const double a = GetParam() * degree;
-    const Vec<2> along{{-std::cos(a), std::sin(a)}}, across{{std::sin(a), std::cos(a)}};
-    const Vec<2> end = line.back() - Vec<2>{{jet.axis_position(), 0.0}};
+    const Vector<2> along{{-std::cos(a), std::sin(a)}}, across{{std::sin(a), std::cos(a)}};
+    const Vector<2> end = line.back() - Vector<2>{{jet.axis_position(), 0.0}};
     EXPECT_NEAR(dot(end, along), length, 1e-9);
     EXPECT_NEAR(dot(end, across), (side == Side::h1 ? 0.5 : -0.5) * width, 1e-6 * width);
     for (std::size_t i = 1; i < line.size(); ++i) ASSERT_LT(norm(line[i] - line[i - 1]), 1.01 * spacing);

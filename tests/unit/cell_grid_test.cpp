@@ -1,6 +1,6 @@
 // Background cells: numbering, wrapping, the outside.
 
-#include "impinge/cell_grid.hpp"
+#include "impinge/particles/cell_grid.hpp"
 
 #include <cmath>
 #include <limits>
@@ -30,8 +30,8 @@ class CellGrids : public testing::Test {
     return {box, all, 1.0};
   }
 
-  static Vec<Dim> point(double x, double y) {
-    Vec<Dim> position;
+  static Vector<Dim> point(double x, double y) {
+    Vector<Dim> position;
     position[0] = x;
     position[1] = y;
     if constexpr (Dim == 3) position[2] = 1.5;  // second of two cells
@@ -175,8 +175,8 @@ TYPED_TEST(CellGrids, WrappedPositionsAreInside) {
 TYPED_TEST(CellGrids, WrappedPositionsAreOnThisSideOfTheMirrors) {
   Image<TestFixture::Dim> image;
   const auto grid = this->make(Edge::mirror);
-  const auto expect_wrapped = [&](const Vec<TestFixture::Dim>& from, const Vec<TestFixture::Dim>& to, double sign_x,
-                                  double sign_y) {
+  const auto expect_wrapped = [&](const Vector<TestFixture::Dim>& from, const Vector<TestFixture::Dim>& to,
+                                  double sign_x, double sign_y) {
     EXPECT_NEAR(norm(grid.wrapped(from, image) - to), 0.0, 1e-14);
     EXPECT_NEAR(norm(image.of_position(from) - to), 0.0, 1e-14);
     EXPECT_EQ(image.of_direction(this->point(3.0, 5.0)), this->point(3.0 * sign_x, 5.0 * sign_y));
@@ -222,9 +222,9 @@ TYPED_TEST(CellGrids, WrappedPositionsHaveACellAtTheEndsOfAnyBox) {
       box.high[k] = box.low[k] + uniform(random);
     }
     const CellGrid<TestFixture::Dim> grid(box, edges, 0.099);
-    for (Vec<TestFixture::Dim> end : {box.low, box.high}) {
+    for (Vector<TestFixture::Dim> end : {box.low, box.high}) {
       for (int ulp = -3; ulp <= 3; ++ulp) {
-        Vec<TestFixture::Dim> position = end;
+        Vector<TestFixture::Dim> position = end;
         for (int k = 0; k < TestFixture::Dim; ++k)
           for (int n = 0; n < std::abs(ulp); ++n) position[k] = std::nextafter(position[k], ulp < 0 ? -1e9 : 1e9);
         ASSERT_GE(grid.cell(grid.wrapped(position)), 0) << "trial " << trial << ", " << ulp << " ulp";

@@ -2,9 +2,9 @@
 // A cloud with its pairs, for the tests of what runs over them.
 
 #include "cloud.hpp"
-#include "impinge/kernel.hpp"
-#include "impinge/neighbours.hpp"
-#include "impinge/operators.hpp"
+#include "impinge/method/operators.hpp"
+#include "impinge/particles/kernel.hpp"
+#include "impinge/particles/neighbours.hpp"
 
 namespace impinge {
 
@@ -34,13 +34,13 @@ struct Cloud {
   }
 
   /// The particle nearest to a point.
-  int at(const Vec<Dim>& point) const {
+  int at(const Vector<Dim>& point) const {
     int nearest = 0;
     for (int i = 0; i < particles.owned; ++i)
       if (distance(i, point) < distance(nearest, point)) nearest = i;
     return nearest;
   }
-  double distance(int i, const Vec<Dim>& point) const {
+  double distance(int i, const Vector<Dim>& point) const {
     return norm(particles.position[static_cast<std::size_t>(i)] - point);
   }
 
@@ -50,28 +50,28 @@ struct Cloud {
   }
 
   int centre() const {
-    Vec<Dim> middle;
+    Vector<Dim> middle;
     for (int k = 0; k < Dim; ++k) middle[k] = 5.5;
     return at(middle);
   }
 
   /// In the middle of the top, with the normal along the last axis.
   int on_surface() const {
-    Vec<Dim> top;
+    Vector<Dim> top;
     for (int k = 0; k < Dim; ++k) top[k] = k == Dim - 1 ? 10.5 : 5.5;
     return at(top);
   }
 
-  Vec<Dim> asymmetry_of(int i) const { return asymmetry<Dim>(near, particles.position, sums.number_density, i); }
+  Vector<Dim> asymmetry_of(int i) const { return asymmetry<Dim>(near, particles.position, sums.number_density, i); }
 
   /// The sum of pressure_gradient over all particles.
-  Vec<Dim> gradient_sum() const {
-    Vec<Dim> sum;
+  Vector<Dim> gradient_sum() const {
+    Vector<Dim> sum;
     for (int i = 0; i < particles.owned; ++i) sum += gradient(i);
     return sum;
   }
-  Vec<Dim> gradient(int i) const {
-    const std::vector<Vec<Dim>> no_wall(particles.type.size());
+  Vector<Dim> gradient(int i) const {
+    const std::vector<Vector<Dim>> no_wall(particles.type.size());
     return pressure_gradient<Dim>(near, particles.position, particles.pressure, particles.type, no_wall,
                                   sums.number_density, i);
   }

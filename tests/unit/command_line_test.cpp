@@ -1,10 +1,10 @@
 // The command line: what is ours, what is PETSc's, what is wrong.
 
-#include "impinge/command_line.hpp"
+#include "impinge/programs/command_line.hpp"
 
 #include <gtest/gtest.h>
 
-#include "impinge/config.hpp"
+#include "impinge/programs/case.hpp"
 
 namespace impinge {
 namespace {

@@ -1,6 +1,6 @@
 // Case files: every kind of mistake with its message, the order of precedence, the resolved text, the shipped cases.
 
-#include "impinge/config.hpp"
+#include "impinge/programs/case.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "impinge/output_error.hpp"
+#include "impinge/core/errors.hpp"
 
 namespace impinge {
 namespace {
@@ -39,7 +39,7 @@ fluid.viscosity = 1e-3
 )"};
 
 /// The case `text` with a sound case as its defaults.
-Config parse(const std::string& text, const NamedText& base = jet_base, const Texts& settings = {}) {
+Case parse(const std::string& text, const NamedText& base = jet_base, const Texts& settings = {}) {
   return parse_case({{"case.toml", text}, base}, settings);
 }
 
@@ -77,11 +77,11 @@ class CaseFiles : public testing::Test {
   fs::path directory_;
 };
 
-TEST(Config, TakesDefaultsFromTheOtherKeys) {
-  const Config config = parse("");
+TEST(Case, TakesDefaultsFromTheOtherKeys) {
+  const Case config = parse("");
   EXPECT_EQ(config.name, "case");
   EXPECT_EQ(config.output.directory, "output/case");
-  EXPECT_EQ(config.output.average_start, 4.0);
+  EXPECT_EQ(config.average_start, 4.0);
   EXPECT_EQ(config.time.max_speed, 20.0);
   EXPECT_EQ(config.pressure.gamma, 0.01);
   EXPECT_EQ(parse("name = \"other\"").output.directory, "output/other");
@@ -90,7 +90,7 @@ TEST(Config, TakesDefaultsFromTheOtherKeys) {
 }
 
 /// The lines of a resolved text, each with its table: "time.dt = 0.001".
-std::vector<std::string> resolved_lines(const Config& config) {
+std::vector<std::string> resolved_lines(const Case& config) {
   std::vector<std::string> lines;
   std::istringstream text(config.resolved_text);
   std::string table;
@@ -119,8 +119,8 @@ std::string scheme_value(const std::string& scheme, const std::string& key) {
   return "no value";
 }
 
-TEST(Config, TheSchemeSetsDefaults) {
-  const auto check = [](const Config& c, bool consistent) {
+TEST(Case, TheSchemeSetsDefaults) {
+  const auto check = [](const Case& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
     EXPECT_EQ(c.pressure.density_speed, consistent ? 0.35 : 0.0);
     EXPECT_EQ(c.pressure.packing, consistent);
@@ -145,14 +145,14 @@ TEST(Config, TheSchemeSetsDefaults) {
   EXPECT_EQ(different, 1 + std::size(scheme_keys));
 }
 
-TEST(Config, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
+TEST(Case, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
   EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_speed, 0.0);
-  const Config both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");
+  const Case both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");
   EXPECT_EQ(both.pressure.density_speed, 0.3);
   EXPECT_EQ(both.pressure.gamma, 0.02);
 }
 
-TEST(Config, MirrorsAreAtLeastAKernelApart) {
+TEST(Case, MirrorsAreAtLeastAKernelApart) {
   EXPECT_EQ(
       mistakes_in("tank.size = [0.04, 0.3]", tank_base),
       Texts{"case.toml:1: tank.size = [0.04, 0.3]: mirrors nearer to each other than the kernel reaches; allowed: "
@@ -161,7 +161,7 @@ TEST(Config, MirrorsAreAtLeastAKernelApart) {
   EXPECT_EQ(parse("tank.size = [0.04, 0.3]\nscheme = \"paper\"", tank_base).tank.size[0], 0.04);
 }
 
-TEST(Config, GivenKeysWinOverTheScheme) {
+TEST(Case, GivenKeysWinOverTheScheme) {
   for (const std::string scheme : {"consistent", "paper"}) {
     const std::string other = scheme == "paper" ? "consistent" : "paper";
     const auto usual = resolved_lines(parse("scheme = \"" + scheme + "\""));
@@ -182,7 +182,7 @@ TEST(Config, GivenKeysWinOverTheScheme) {
   EXPECT_EQ(parse("walls.model = \"columns\"").walls.model, WallModel::columns);
 }
 
-TEST(Config, DescribeNamesTheDefaultsOfBothSchemes) {
+TEST(Case, DescribeNamesTheDefaultsOfBothSchemes) {
   const std::string text = describe_keys();
   for (const std::string key : scheme_keys) {
     const std::string fallback =
@@ -193,7 +193,7 @@ TEST(Config, DescribeNamesTheDefaultsOfBothSchemes) {
   }
 }
 
-TEST(Config, FindsMistakesInTheSchemesKeys) {
+TEST(Case, FindsMistakesInTheSchemesKeys) {
   EXPECT_EQ(mistakes_in("scheme = \"best\""),
             Texts{"case.toml:1: scheme = \"best\": unknown word; allowed: \"consistent\", \"paper\""});
   EXPECT_EQ(mistakes_in("walls.model = \"bricks\""),
@@ -212,24 +212,24 @@ TEST(Config, FindsMistakesInTheSchemesKeys) {
     EXPECT_EQ(mistakes_in(key + " = 1"), Texts{"case.toml:1: " + key + " = 1: not a boolean; allowed: true, false"});
 }
 
-TEST(Config, AFluidAtRestHasASpeedLimitToo) {
+TEST(Case, AFluidAtRestHasASpeedLimitToo) {
   EXPECT_DOUBLE_EQ(parse("fluid.gravity = [0, 0]", tank_base).time.max_speed, 20.0 * 0.01 / 1e-3);
   EXPECT_DOUBLE_EQ(parse("periodic_box.shear_speed = 0", box_base).time.max_speed, 20.0 * 0.0025 / 5e-4);
 }
 
-TEST(Config, ThePlateReachesBeyondTheAnalyticWallPressureInWholeSpacings) {
-  const Config at60 = parse("");  // Cp = .01 at -1.2864 H and 3.2126 H
+TEST(Case, ThePlateReachesBeyondTheAnalyticWallPressureInWholeSpacings) {
+  const Case at60 = parse("");  // Cp = .01 at -1.2864 H and 3.2126 H
   EXPECT_NEAR(at60.plate.begin, -1.02, 1e-12);
   EXPECT_NEAR(at60.plate.end, 1.70, 1e-12);
-  const Config at90 = parse("jet.angle = 90");  // Cp = .01 at -+2.4039 H
+  const Case at90 = parse("jet.angle = 90");  // Cp = .01 at -+2.4039 H
   EXPECT_NEAR(at90.plate.begin, -1.48, 1e-12);
   EXPECT_NEAR(at90.plate.end, 1.70, 1e-12);
-  const Config given = parse("plate.begin = -0.5");
+  const Case given = parse("plate.begin = -0.5");
   EXPECT_EQ(given.plate.begin, -0.5);
   EXPECT_NEAR(given.plate.end, 1.70, 1e-12);
 }
 
-TEST(Config, FindsWrongTypes) {
+TEST(Case, FindsWrongTypes) {
   EXPECT_EQ(mistakes_in("jet.width = \"wide\""),
             Texts{"case.toml:1: jet.width = \"wide\": not a number; allowed: > 0 (m)"});
   EXPECT_EQ(mistakes_in("\ndimension = 2.0"), Texts{"case.toml:2: dimension = 2.0: not an integer; allowed: [2, 3]"});
@@ -244,7 +244,7 @@ TEST(Config, FindsWrongTypes) {
   EXPECT_EQ(mistakes_in("[[kernel]]\nradius = 2.1").size(), 1u);
 }
 
-TEST(Config, FindsNumbersOutOfRange) {
+TEST(Case, FindsNumbersOutOfRange) {
   EXPECT_EQ(mistakes_in("particles.spacing = -0.01"),
             Texts{"case.toml:1: particles.spacing = -0.01: out of range; allowed: > 0 (m)"});
   EXPECT_EQ(mistakes_in("particles.spacing = 0"),
@@ -264,7 +264,7 @@ TEST(Config, FindsNumbersOutOfRange) {
             Texts{"case.toml:1: kernel.laplacian_radius = 6.5: out of range; allowed: (1, 6] (dp)"});
 }
 
-TEST(Config, FindsUnknownWordsAndEmptyStrings) {
+TEST(Case, FindsUnknownWordsAndEmptyStrings) {
   EXPECT_EQ(mistakes_in("kernel.type = \"cubic\""),
             Texts{"case.toml:1: kernel.type = \"cubic\": unknown word; allowed: \"non_singular\", \"singular\""});
   EXPECT_EQ(mistakes_in("geometry = \"pipe\""),
@@ -274,7 +274,7 @@ TEST(Config, FindsUnknownWordsAndEmptyStrings) {
   EXPECT_EQ(mistakes_in("name = \"a/b\"").size(), 1u);
 }
 
-TEST(Config, FindsWrongVectors) {
+TEST(Case, FindsWrongVectors) {
   EXPECT_EQ(mistakes_in("fluid.gravity = [0, 0, -9.81]"),
             Texts{"case.toml:1: fluid.gravity = [0, 0, -9.81]: has 3 numbers, but the dimension is 2; allowed: one per "
                   "dimension, each any finite number (m/s^2)"});
@@ -286,7 +286,7 @@ TEST(Config, FindsWrongVectors) {
             Texts{"case.toml:1: tank.size = [0.2, -0.3]: out of range; allowed: one per dimension, each > 0 (m)"});
 }
 
-TEST(Config, FindsUnknownKeysAndNamesTheNearest) {
+TEST(Case, FindsUnknownKeysAndNamesTheNearest) {
   EXPECT_EQ(mistakes_in("[particles]\nspacin = 0.01"),
             Texts{"case.toml:2: particles.spacin = 0.01: unknown key; did you mean particles.spacing?"});
   EXPECT_EQ(mistakes_in("dt = 1e-3"), Texts{"case.toml:1: dt = 0.001: unknown key; did you mean time.dt?"});
@@ -299,7 +299,7 @@ TEST(Config, FindsUnknownKeysAndNamesTheNearest) {
             Texts{"case.toml:1: turbulence.closure = \"k-epsilon\": unknown key"});
 }
 
-TEST(Config, FindsKeysOfAnotherGeometry) {
+TEST(Case, FindsKeysOfAnotherGeometry) {
   EXPECT_EQ(
       mistakes_in("[tank]\nfluid_height = 0.1"),
       Texts{"case.toml:2: tank.fluid_height = 0.1: a key of geometry \"tank\", but this case's geometry is \"jet\""});
@@ -307,7 +307,7 @@ TEST(Config, FindsKeysOfAnotherGeometry) {
             Texts{"case.toml:1: plate.end = 1.0: a key of geometry \"jet\", but this case's geometry is \"tank\""});
 }
 
-TEST(Config, FindsMissingKeys) {
+TEST(Case, FindsMissingKeys) {
   EXPECT_EQ(mistakes([] {
               parse_case({{"case.toml", "geometry = \"jet\""}});
             }),
@@ -323,7 +323,7 @@ TEST(Config, FindsMissingKeys) {
             "case.toml: geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\"");
 }
 
-TEST(Config, FindsWhatIsNotToml) {
+TEST(Case, FindsWhatIsNotToml) {
   const Texts found = mistakes_in("name = \"x\"\n[time\nend = 1");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0].starts_with("case.toml:2: not TOML: ")) << found[0];
@@ -343,7 +343,7 @@ void expect_refused(const std::vector<Malformed>& table, const NamedText& base) 
   }
 }
 
-TEST(Config, RefusesMalformedTomlWithItsLine) {
+TEST(Case, RefusesMalformedTomlWithItsLine) {
   const std::vector<Malformed> table{
       {"time.dt", "1: not TOML: "},
       {"time.dt =", "1: not TOML: "},
@@ -398,7 +398,7 @@ TEST(Config, RefusesMalformedTomlWithItsLine) {
   expect_refused(table, jet_base);
 }
 
-TEST(Config, RefusesValuesThatNoRunCouldUse) {
+TEST(Case, RefusesValuesThatNoRunCouldUse) {
   const std::vector<Malformed> jet{
       {"dimension = -2", "1: dimension = -2: out of range; allowed: [2, 3]"},
       {"dimension = 9223372036854775807", "1: dimension = 9223372036854775807: out of range; allowed: [2, 3]"},
@@ -453,7 +453,7 @@ TEST(Config, RefusesValuesThatNoRunCouldUse) {
             Texts{"base.toml:3: time.dt = 0.0008: above the viscous limit 0.2 dp^2/nu; allowed: (0, 8e-305] (s)"});
 }
 
-TEST(Config, TablesNestedAsDeepAsALineAllowsAreUnknownKeys) {
+TEST(Case, TablesNestedAsDeepAsALineAllowsAreUnknownKeys) {
   std::string key = "a";
   for (int depth = 1; depth < 4000; ++depth) key += ".a";
   const Texts found = mistakes_in("[" + key + "]\n" + key + " = 1");
@@ -461,7 +461,7 @@ TEST(Config, TablesNestedAsDeepAsALineAllowsAreUnknownKeys) {
   EXPECT_EQ(found[0], "case.toml:1: a.a.a.a.a.a.a.a.a.a = {...}: unknown key");
 }
 
-TEST(Config, DefaultsThatOverflowAreMistakes) {
+TEST(Case, DefaultsThatOverflowAreMistakes) {
   EXPECT_EQ(mistakes_in("jet.speed = 1e308"),
             Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
   EXPECT_EQ(mistakes_in("periodic_box.shear_speed = 1e308", box_base),
@@ -469,7 +469,7 @@ TEST(Config, DefaultsThatOverflowAreMistakes) {
   EXPECT_EQ(parse("jet.speed = 1e308\ntime.max_speed = 1.5e308").time.max_speed, 1.5e308);
 }
 
-TEST(Config, GathersEveryMistakeInTheOrderOfTheLines) {
+TEST(Case, GathersEveryMistakeInTheOrderOfTheLines) {
   const Texts found = mistakes_in(R"(name = ""
 [particles]
 spacing = -0.02
@@ -496,12 +496,12 @@ average_start = 9.0
                           "base.toml:4: fluid.densty = 1: unknown key; did you mean fluid.density?"}));
 }
 
-TEST(Config, WhatHasTheMistakesInOneText) {
+TEST(Case, WhatHasTheMistakesInOneText) {
   const InputError error({"one", "two"});
   EXPECT_STREQ(error.what(), "one\ntwo");
 }
 
-TEST(Config, TheJetIsWholeParticlesWide) {
+TEST(Case, TheJetIsWholeParticlesWide) {
   EXPECT_EQ(mistakes_in("particles.spacing = 0.03"),
             Texts{"base.toml:4: jet.width = 0.4: 0.4 m is 13.3333333 particle spacings; allowed: integer multiples of "
                   "particles.spacing = 0.03 (m)"});
@@ -510,11 +510,11 @@ TEST(Config, TheJetIsWholeParticlesWide) {
   EXPECT_TRUE(mistakes_in("particles.spacing = 0.08").empty());
 }
 
-TEST(Config, TheJetIsPlane) {
+TEST(Case, TheJetIsPlane) {
   EXPECT_EQ(mistakes_in("dimension = 3"), Texts{"case.toml:1: dimension = 3: the jet has two dimensions; allowed: 2"});
 }
 
-TEST(Config, TheJetMustHitThePlate) {
+TEST(Case, TheJetMustHitThePlate) {
   EXPECT_EQ(mistakes_in("[plate]\nbegin = 5.0\nend = 6.0"),
             Texts{"case.toml:2: plate.begin = 5.0: the jet misses the plate, which must reach beyond the stagnation "
                   "point x = 0 and from x = 0.0471747 m to 0.509055 m; allowed: < 0 (m)"});
@@ -527,19 +527,19 @@ TEST(Config, TheJetMustHitThePlate) {
   EXPECT_TRUE(mistakes_in("plate = {begin = -0.01, end = 0.51}").empty());
 }
 
-TEST(Config, TheInletStandsAboveThePlate) {
+TEST(Case, TheInletStandsAboveThePlate) {
   EXPECT_EQ(mistakes_in("jet.inlet_distance = 1.4"),
             Texts{"case.toml:1: jet.inlet_distance = 1.4: the inlet's lower corner is less than H above the plate; "
                   "allowed: >= 1.44338 (H)"});
   EXPECT_EQ(mistakes_in("jet.angle = 10").at(0).substr(0, 40), "case.toml: jet.inlet_distance = 3.5: the");
 }
 
-TEST(Config, TheAverageStartsBeforeTheEnd) {
+TEST(Case, TheAverageStartsBeforeTheEnd) {
   EXPECT_EQ(mistakes_in("output.average_start = 5"),
             Texts{"case.toml:1: output.average_start = 5.0: the average starts after the end; allowed: [0, 5.0) (s)"});
 }
 
-TEST(Config, KernelRadiiAndSurfaceDensitiesAreOrdered) {
+TEST(Case, KernelRadiiAndSurfaceDensitiesAreOrdered) {
   EXPECT_EQ(mistakes_in("kernel.radius = 4.5"),
             Texts{"case.toml:1: kernel.radius = 4.5: larger than the Laplacian's radius; allowed: (1, 4.01] (dp)"});
   EXPECT_EQ(mistakes_in("free_surface.surface_density = 0.98"),
@@ -547,12 +547,12 @@ TEST(Config, KernelRadiiAndSurfaceDensitiesAreOrdered) {
                   "0.97] (n0)"});
 }
 
-TEST(Config, TheStepKeepsTheViscousLimit) {
+TEST(Case, TheStepKeepsTheViscousLimit) {
   EXPECT_EQ(mistakes_in("time.dt = 2e-3", box_base),
             Texts{"case.toml:1: time.dt = 0.002: above the viscous limit 0.2 dp^2/nu; allowed: (0, 0.00125] (s)"});
 }
 
-TEST(Config, TanksAndBoxesAreWholeParticlesLarge) {
+TEST(Case, TanksAndBoxesAreWholeParticlesLarge) {
   EXPECT_EQ(
       mistakes_in("tank.size = [0.205, 0.3]", tank_base),
       Texts{"case.toml:1: tank.size = [0.205, 0.3]: 0.205 m is 20.5 particle spacings; allowed: integer multiples "
@@ -566,18 +566,18 @@ TEST(Config, TanksAndBoxesAreWholeParticlesLarge) {
                   "multiples of particles.spacing = 0.0025 (m)"});
 }
 
-TEST(Config, TheFluidStaysBelowTheWalls) {
+TEST(Case, TheFluidStaysBelowTheWalls) {
   EXPECT_EQ(mistakes_in("tank.fluid_height = 0.31", tank_base),
             Texts{"case.toml:1: tank.fluid_height = 0.31: higher than the walls; allowed: (0, 0.3] (m)"});
 }
 
-TEST(Config, PeriodsAreThreeRadiiLong) {
+TEST(Case, PeriodsAreThreeRadiiLong) {
   EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.025]", box_base),
             Texts{"case.toml:1: periodic_box.size = [0.1, 0.025]: a period is shorter than three Laplacian radii; "
                   "allowed: >= 0.030075 (m)"});
 }
 
-TEST(Config, ParticlesCanBeCounted) {
+TEST(Case, ParticlesCanBeCounted) {
   EXPECT_EQ(mistakes_in("particles.spacing = 1e-7"),
             Texts{"case.toml:1: particles.spacing = 1e-07: makes some 5.6e+13 particles; allowed: at most 2147483647"});
   EXPECT_EQ(mistakes_in("particles.spacing = 1e-7", tank_base).size(), 1u);
@@ -585,11 +585,11 @@ TEST(Config, ParticlesCanBeCounted) {
             "case.toml:1: particles.spacing = 1e-07: makes some 1e+12 particles; allowed: at most 2147483647");
 }
 
-TEST(Config, EarlierFilesOverrideLaterOnesAndSettingsAll) {
+TEST(Case, EarlierFilesOverrideLaterOnesAndSettingsAll) {
   const std::vector<NamedText> files{{"case.toml", "pressure.gamma = 0.1\ntime.dt = 1e-4"},
                                      {"common.toml", "pressure.gamma = 0.2\ntime.cfl = 0.1\ntime.dt = 1e-5"},
                                      jet_base};
-  const Config config = parse_case(files, {"time.dt=2e-4", "time.dt=3e-4"});
+  const Case config = parse_case(files, {"time.dt=2e-4", "time.dt=3e-4"});
   EXPECT_EQ(config.pressure.gamma, 0.1);
   EXPECT_EQ(config.time.cfl, 0.1);
   EXPECT_EQ(config.time.dt, 3e-4);
@@ -597,12 +597,12 @@ TEST(Config, EarlierFilesOverrideLaterOnesAndSettingsAll) {
   EXPECT_EQ(parse_case(files).time.dt, 1e-4);
 }
 
-TEST(Config, AnOverriddenValueIsNotChecked) {
+TEST(Case, AnOverriddenValueIsNotChecked) {
   EXPECT_TRUE(mistakes_in("pressure.gamma = 7", jet_base, {"pressure.gamma=0.5"}).empty());
 }
 
-TEST(Config, SettingsAreTomlOrBareWords) {
-  const Config config =
+TEST(Case, SettingsAreTomlOrBareWords) {
+  const Case config =
       parse("", jet_base,
             {"jet.start=steady", "kernel.type = \"singular\"", "fluid.gravity=[0, -9.81]", "output.directory=/tmp/x y",
              "name=12", "pressure.clamp_negative=false", "plate={begin=-1.0, end=2.0}"});
@@ -615,7 +615,7 @@ TEST(Config, SettingsAreTomlOrBareWords) {
   EXPECT_EQ(config.plate.end, 2.0);
 }
 
-TEST(Config, FindsMistakesInSettings) {
+TEST(Case, FindsMistakesInSettings) {
   EXPECT_EQ(mistakes_in("", jet_base, {"jet.start", "=1", "jet.start=steadi", "time.dt=fast", "tiem.dt=1", "time.dt="}),
             (Texts{"--set: jet.start: not of the form key=value", "--set: =1: not of the form key=value",
                    "--set: jet.start = \"steadi\": unknown word; allowed: \"impact\", \"steady\"",
@@ -625,8 +625,8 @@ TEST(Config, FindsMistakesInSettings) {
 }
 
 /// The text holds every key; some members besides, bit by bit.
-void expect_round_trip(const Config& config) {
-  const Config again = parse_case({{"resolved.toml", config.resolved_text}});
+void expect_round_trip(const Case& config) {
+  const Case again = parse_case({{"resolved.toml", config.resolved_text}});
   EXPECT_EQ(again.resolved_text, config.resolved_text);
   EXPECT_EQ(again.particles.spacing, config.particles.spacing);
   EXPECT_EQ(again.time.max_speed, config.time.max_speed);
@@ -638,26 +638,26 @@ void expect_round_trip(const Config& config) {
   EXPECT_EQ(again.output.directory, config.output.directory);
 }
 
-TEST(Config, TheResolvedTextReadsBackToTheSameCase) {
+TEST(Case, TheResolvedTextReadsBackToTheSameCase) {
   expect_round_trip(parse(""));
   expect_round_trip(parse("fluid.gravity = [-0.0, -9.80665]", tank_base));
   expect_round_trip(parse("name = \"sh\\\"e\\\\ar \\n \\u00e9\"\nkernel.radius = 2.1000000000000001", box_base));
   const double odd = 0.1 + 0.2;
-  const Config config = parse("", jet_base, {"fluid.density=0.30000000000000004"});
+  const Case config = parse("", jet_base, {"fluid.density=0.30000000000000004"});
   EXPECT_EQ(config.fluid.density, odd);
   EXPECT_EQ(parse_case({{"r", config.resolved_text}}).fluid.density, odd);
   EXPECT_TRUE(
       std::signbit(parse_case({{"r", parse("fluid.gravity = [-0.0, 0]", tank_base).resolved_text}}).fluid.gravity[0]));
 }
 
-TEST(Config, TheResolvedTextHasNoKeysOfOtherGeometries) {
+TEST(Case, TheResolvedTextHasNoKeysOfOtherGeometries) {
   const std::string text = parse("", tank_base).resolved_text;
   EXPECT_EQ(text.find("[jet]"), text.npos);
   EXPECT_EQ(text.find("[periodic_box]"), text.npos);
   EXPECT_NE(text.find("[tank]\nsize = [0.2, 0.3]\nfluid_height = 0.2\n"), text.npos);
 }
 
-TEST(Config, DescribeListsEveryKey) {
+TEST(Case, DescribeListsEveryKey) {
   const std::string text = describe_keys();
   for (const NamedText& base : {jet_base, tank_base, box_base}) {
     for (const std::string& line : resolved_lines(parse("", base)))
@@ -675,7 +675,7 @@ TEST_F(CaseFiles, IncludedFilesAreDefaults) {
   const std::vector<NamedText> files = load_case_files(path);
   ASSERT_EQ(files.size(), 3u);
   EXPECT_EQ(files[0].first, path);
-  const Config config = parse_case(files);
+  const Case config = parse_case(files);
   EXPECT_EQ(config.collision.distance, 0.5);
   EXPECT_EQ(config.collision.restitution, 0.4);
   EXPECT_EQ(config.pressure.gamma, 0.3);
@@ -743,7 +743,7 @@ TEST_F(CaseFiles, FilesThatAreNotTomlAreLeftToParseCase) {
 }
 
 TEST_F(CaseFiles, ChecksThatTheOutputDirectoryIsWritable) {
-  Config config = parse("output.directory = '" + path("a/b") + "'");
+  Case config = parse("output.directory = '" + path("a/b") + "'");
   check_writable(config);
   EXPECT_TRUE(fs::is_directory(path("a/b")));
   EXPECT_TRUE(fs::is_empty(path("a/b")));
@@ -756,13 +756,13 @@ TEST_F(CaseFiles, ChecksThatTheOutputDirectoryIsWritable) {
   }
 }
 
-TEST(Config, ShippedCasesAreSound) {
+TEST(Case, ShippedCasesAreSound) {
   const fs::path input = fs::path(__FILE__).parent_path() / "../../input";
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(input)) {
     if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "common") continue;
     const Texts found = mistakes([&] {
-      const Config config = parse_case(load_case_files(entry.path()));
+      const Case config = parse_case(load_case_files(entry.path()));
       EXPECT_EQ(config.name, entry.path().stem());
       expect_round_trip(config);
     });
@@ -772,11 +772,11 @@ TEST(Config, ShippedCasesAreSound) {
   EXPECT_GE(count, 16);
 }
 
-TEST(Config, ThePapersCasesAreThoseOfItsTables) {
+TEST(Case, ThePapersCasesAreThoseOfItsTables) {
   const fs::path paper = fs::path(__FILE__).parent_path() / "../../input/paper";
   const auto check = [&](const std::string& name, double gamma, KernelType kernel) {
     for (const int angle : {30, 60}) {
-      const Config c = parse_case(load_case_files(paper / ("jet" + std::to_string(angle) + "-" + name + ".toml")));
+      const Case c = parse_case(load_case_files(paper / ("jet" + std::to_string(angle) + "-" + name + ".toml")));
       EXPECT_EQ(c.scheme, Scheme::paper);
       EXPECT_EQ(c.walls.model, WallModel::particles);
       EXPECT_EQ(c.pressure.gamma, gamma);
@@ -800,11 +800,11 @@ TEST(Config, ThePapersCasesAreThoseOfItsTables) {
 const NamedText stored{"x_00000007.checkpoint", parse("name = \"x\"").resolved_text};
 
 TEST(RestartCase, TakesSettingsOverTheStoredCase) {
-  const Config config = parse_restart(stored, {"time.end=7", "checkpoint.steps=3", "jet.speed=1.0"}, "a \"b\"");
+  const Case config = parse_restart(stored, {"time.end=7", "checkpoint.steps=3", "jet.speed=1.0"}, "a \"b\"");
   EXPECT_EQ(config.time.end, 7.0);
   EXPECT_EQ(config.checkpoint.steps, 3);
   EXPECT_EQ(config.output.directory, "a \"b\"");
-  EXPECT_EQ(config.output.average_start, 4.0);  // of the stored case
+  EXPECT_EQ(config.average_start, 4.0);  // of the stored case
   EXPECT_NE(config.resolved_text.find(R"(directory = "a \"b\"")"), std::string::npos) << config.resolved_text;
 }
 
@@ -823,7 +823,7 @@ TEST(RestartCase, RefusesWhatARunCannotChange) {
 }
 
 TEST(RestartCase, RefusesAForeignText) {
-  EXPECT_THROW(parse_restart({"x_00000007.checkpoint", "geometry = 7"}, {}, "out"), OutputError);
+  EXPECT_THROW(parse_restart({"x_00000007.checkpoint", "geometry = 7"}, {}, "out"), FileError);
 }
 
 }  // namespace

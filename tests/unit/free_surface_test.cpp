@@ -1,11 +1,10 @@
 // The zero of the pressure outside the surface particles, on a lattice with a flat surface.
 
-#include "impinge/free_surface.hpp"
-
 #include <cmath>
 
 #include "cloud_with_pairs.hpp"
 #include "dimensions.hpp"
+#include "impinge/method/surface.hpp"
 
 namespace impinge {
 namespace {
@@ -26,7 +25,7 @@ class FreeSurface : public testing::Test {
   }
 
   int at_depth(double depth) const {
-    Vec<Dim> point;
+    Vector<Dim> point;
     point.component.fill(5.5);
     point[Dim - 1] = 11.0 - depth;
     return lattice_.at(point);
@@ -34,7 +33,7 @@ class FreeSurface : public testing::Test {
   double depth_of(int i, double spacing = 1.0) const {
     return surface_depth<Dim>(lattice_.far_row(i), lattice_.particles.position, asymmetry_, marked_, spacing, i);
   }
-  Vec<Dim> normal_at(double depth) const {
+  Vector<Dim> normal_at(double depth) const {
     return surface_normal<Dim>(lattice_.near, asymmetry_, marked_, at_depth(depth));
   }
 
@@ -56,7 +55,7 @@ class FreeSurface : public testing::Test {
   }
 
   Cloud<Dim> lattice_{0.0};
-  std::vector<Vec<Dim>> asymmetry_;
+  std::vector<Vector<Dim>> asymmetry_;
   std::vector<std::uint8_t> marked_;
 };
 TYPED_TEST_SUITE(FreeSurface, Dimensions);
@@ -118,8 +117,8 @@ TYPED_TEST(FreeSurface, DepthIsThatBelowAFlatSurface) {
 TYPED_TEST(FreeSurface, DepthIsTheMeanBelowThePlanesOfWhichTheNearestCount) {
   const auto top = static_cast<std::size_t>(this->at_depth(0.5));
   const int below = this->at_depth(2.5);
-  const auto turn = [&](const Vec<TestFixture::Dim>& normal) { this->asymmetry_[top] = normal; };
-  Vec<TestFixture::Dim> up, across;
+  const auto turn = [&](const Vector<TestFixture::Dim>& normal) { this->asymmetry_[top] = normal; };
+  Vector<TestFixture::Dim> up, across;
   up[TestFixture::Dim - 1] = 5.0;  // only the direction counts
   across[0] = 1.0;
   turn(up);
@@ -140,13 +139,13 @@ TYPED_TEST(FreeSurface, DepthIsTheMeanBelowThePlanesOfWhichTheNearestCount) {
 }
 
 TYPED_TEST(FreeSurface, NormalIsTheUnitVectorOutOfTheFluid) {
-  Vec<TestFixture::Dim> up;
+  Vector<TestFixture::Dim> up;
   up[TestFixture::Dim - 1] = 1.0;
   for (const double depth : {0.5, 1.5, 2.5}) EXPECT_NEAR(norm(this->normal_at(depth) - up), 0.0, 1e-14) << depth;
-  EXPECT_EQ(this->normal_at(3.5), Vec<TestFixture::Dim>{});
-  Vec<TestFixture::Dim>& own = this->asymmetry_[static_cast<std::size_t>(this->at_depth(0.5))];
+  EXPECT_EQ(this->normal_at(3.5), Vector<TestFixture::Dim>{});
+  Vector<TestFixture::Dim>& own = this->asymmetry_[static_cast<std::size_t>(this->at_depth(0.5))];
   own[0] = own[TestFixture::Dim - 1];
-  const Vec<TestFixture::Dim> tilted = this->normal_at(0.5);
+  const Vector<TestFixture::Dim> tilted = this->normal_at(0.5);
   EXPECT_NEAR(norm(tilted), 1.0, 1e-14);
   EXPECT_GT(tilted[0], this->normal_at(1.5)[0]);  // its own counts most
   EXPECT_GT(this->normal_at(1.5)[0], 0.01);

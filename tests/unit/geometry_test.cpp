@@ -1,7 +1,5 @@
 // Where particles are at the start, where they enter and where they leave.
 
-#include "impinge/geometry.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +10,10 @@
 #include <random>
 #include <set>
 
-#include "impinge/analytic_jet.hpp"
-#include "impinge/lattice.hpp"
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/core/mpi.hpp"
+#include "impinge/scenes/analytic_jet.hpp"
+#include "impinge/scenes/scene.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -24,7 +24,7 @@ constexpr double width = 0.4;
 constexpr double speed = 1.5;
 constexpr int row_length = 10;  // width / dp
 
-Config jet_case(double angle, const char* start = "impact", const char* walls = "particles") {
+Case jet_case(double angle, const char* start = "impact", const char* walls = "particles") {
   return parse_case({{"jet.toml", fmt::format(R"(geometry = "jet"
 particles.spacing = {}
 time = {{end = 1.0, dt = 1e-3}}
@@ -34,7 +34,7 @@ walls.model = "{}"
                                               dp, width, speed, angle, start, walls)}});
 }
 
-Config tank_case(int dimension, const char* walls = "particles") {
+Case tank_case(int dimension, const char* walls = "particles") {
   const bool flat = dimension == 2;
   return parse_case({{"tank.toml", fmt::format(R"(geometry = "tank"
 dimension = {}
@@ -48,7 +48,7 @@ walls.model = "{}"
                                                flat ? "[0.2, 0.1]" : "[0.2, 0.05, 0.1]", walls)}});
 }
 
-Config box_case(int dimension) {
+Case box_case(int dimension) {
   return parse_case({{"box.toml", fmt::format(R"(geometry = "periodic_box"
 dimension = {}
 particles.spacing = 0.01
@@ -60,7 +60,7 @@ periodic_box = {{size = {}, shear_speed = 0.5}}
 }
 
 template <int Dim>
-Particles<Dim> fill(const Config& config, int ranks = 1) {
+Particles<Dim> fill(const Case& config, int ranks = 1) {
   Particles<Dim> particles;
   for (int rank = 0; rank < ranks; ++rank) make_geometry<Dim>(config)->fill(rank, ranks, particles);
   return particles;
@@ -82,7 +82,7 @@ double smallest_distance(const Particles<Dim>& particles) {
 
 /// Every ghost's wall particle is the one nearest to it.
 template <int Dim>
-void expect_nearest_walls_of_ghosts(const Config& config) {
+void expect_nearest_walls_of_ghosts(const Case& config) {
   const Particles<Dim> particles = fill<Dim>(config);
   const auto geometry = make_geometry<Dim>(config);
   ASSERT_GT(count(particles, ParticleType::ghost), 0);
@@ -103,7 +103,7 @@ void expect_nearest_walls_of_ghosts(const Config& config) {
 }
 
 /// The fluid is the same whatever the walls are.
-void expect_the_same_fluid(const Config& config, const Config& other) {
+void expect_the_same_fluid(const Case& config, const Case& other) {
   const auto fluid = [](const Particles<2>& particles) {
     std::set<std::array<double, 2>> positions;
     for (std::size_t i = 0; i < particles.position.size(); ++i)
@@ -115,7 +115,7 @@ void expect_the_same_fluid(const Config& config, const Config& other) {
 }
 
 template <int Dim>
-void expect_the_same_for_any_number_of_ranks(const Config& config) {
+void expect_the_same_for_any_number_of_ranks(const Case& config) {
   const auto by_id = [&](int ranks) {
     const Particles<Dim> particles = fill<Dim>(config, ranks);
     std::map<std::int64_t, std::tuple<std::array<double, Dim>, std::array<double, Dim>, ParticleType>> all;
@@ -181,11 +181,11 @@ TEST(Tank, GhostsStandBehindTheNearestWallParticle) {
 }
 
 template <int Dim>
-void expect_mirrored_tank(const Vec<Dim>& size, int walls) {
-  const Config config = tank_case(Dim, "mirror");
+void expect_mirrored_tank(const Vector<Dim>& size, int walls) {
+  const Case config = tank_case(Dim, "mirror");
   const auto geometry = make_geometry<Dim>(config);
   const Box<Dim> bounds = geometry->bounds();
-  EXPECT_EQ(bounds.low, Vec<Dim>{});
+  EXPECT_EQ(bounds.low, Vector<Dim>{});
   for (int k = 0; k < Dim; ++k) {
     const AxisEdges edges = geometry->edges()[static_cast<std::size_t>(k)];
     const bool vertical = k == Dim - 1;
@@ -223,7 +223,7 @@ TEST(Jet, GhostsStandBehindTheNearestWallParticle) { expect_nearest_walls_of_gho
 
 TEST(Jet, OnAMirrorHasWallParticlesOnTheSurfaceOnly) {
   for (const char* start : {"impact", "steady"}) {
-    const Config config = jet_case(60.0, start, "mirror");
+    const Case config = jet_case(60.0, start, "mirror");
     const auto geometry = make_geometry<2>(config);
     const Edges<2> edges = geometry->edges();
     EXPECT_EQ(edges[1].low, Edge::mirror);
@@ -271,7 +271,7 @@ TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
 }
 
 TEST(Geometry, ParticlesStartInsideTheBounds) {
-  for (const Config& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady"),
+  for (const Case& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady"),
                                tank_case(2, "mirror"), jet_case(30.0, "steady", "mirror")}) {
     const Box<2> bounds = make_geometry<2>(config)->bounds();
     const Particles<2> particles = fill<2>(config);
@@ -302,7 +302,7 @@ class JetInlet : public testing::TestWithParam<double> {
     for (auto& position : particles_.position) position += dt * geometry_->inlet_velocity();
     travelled_ += dt * speed;
     const int before = particles_.owned;
-    const BoundaryFlow flow = geometry_->move_boundaries(dt, particles_, [](const Vec<2>&) { return true; });
+    const BoundaryFlow flow = geometry_->move_boundaries(dt, particles_, [](const Vector<2>&) { return true; });
     EXPECT_EQ(flow.left, 0);
     for (int i = 0; i < particles_.owned; ++i) {
       const auto record = particles_.record(i);
@@ -342,7 +342,7 @@ class JetInlet : public testing::TestWithParam<double> {
   std::unique_ptr<Geometry<2>> geometry_ = make_geometry<2>(jet_case(GetParam()));
   Particles<2> particles_;
   std::set<std::int64_t> ids_;
-  Vec<2> along_;
+  Vector<2> along_;
   double travelled_ = 0.0;
 };
 
@@ -373,10 +373,10 @@ TEST_P(JetInlet, FeedsWholeRowsAtIrregularSteps) {
 }
 
 TEST_P(JetInlet, FeedsTheSameParticlesWhenTheyAreSharedOut) {
-  const auto left = [](const Vec<2>& position) { return position[0] < -0.5; };
+  const auto left = [](const Vector<2>& position) { return position[0] < -0.5; };
   const double dt = 0.3 * dp / speed;
   std::map<std::int64_t, std::array<double, 2>> whole, shared;
-  const auto feed = [&](const std::function<bool(const Vec<2>&)>& owns, auto& fed) {
+  const auto feed = [&](const std::function<bool(const Vector<2>&)>& owns, auto& fed) {
     const auto geometry = make_geometry<2>(jet_case(GetParam()));
     Particles<2> none;
     for (int k = 0; k < 50; ++k) geometry->move_boundaries(dt, none, owns);
@@ -385,16 +385,16 @@ TEST_P(JetInlet, FeedsTheSameParticlesWhenTheyAreSharedOut) {
       EXPECT_TRUE(fed.try_emplace(record.id, record.position.component).second);
     }
   };
-  feed([](const Vec<2>&) { return true; }, whole);
+  feed([](const Vector<2>&) { return true; }, whole);
   feed(left, shared);
-  feed([&](const Vec<2>& position) { return !left(position); }, shared);
+  feed([&](const Vector<2>& position) { return !left(position); }, shared);
   EXPECT_EQ(whole.size(), 15U * row_length);
   EXPECT_EQ(whole, shared);
 }
 
 TEST_P(JetInlet, FluidPastTheOutletsLeaves) {
   Particles<2> fluid;
-  const Config config = jet_case(GetParam());
+  const Case config = jet_case(GetParam());
   const Box<2> bounds = geometry_->bounds();
   const double right = std::max(config.plate.end, bounds.high[0]);
   const double left = std::min(config.plate.begin, bounds.low[0]);
@@ -405,10 +405,10 @@ TEST_P(JetInlet, FluidPastTheOutletsLeaves) {
   put(left - dp, dp);
   put(0.0, bounds.high[1]);
   put(0.0, dp);
-  const BoundaryFlow flow = geometry_->move_boundaries(1e-9, fluid, [](const Vec<2>&) { return true; });
+  const BoundaryFlow flow = geometry_->move_boundaries(1e-9, fluid, [](const Vector<2>&) { return true; });
   EXPECT_EQ(flow.left, 3);
   ASSERT_EQ(fluid.owned, 1);
-  EXPECT_EQ(fluid.position[0], (Vec<2>{{0.0, dp}}));
+  EXPECT_EQ(fluid.position[0], (Vector<2>{{0.0, dp}}));
 }
 
 TEST_P(JetInlet, ImpactingColumnIsWholeAndTouchesThePlate) {
@@ -433,7 +433,7 @@ TEST_P(JetInlet, ImpactingColumnIsWholeAndTouchesThePlate) {
 TEST_P(JetInlet, SteadyStartFillsTheAnalyticJet) {
   const double angle = GetParam() * std::numbers::pi / 180.0;
   const AnalyticJet analytic(width, speed, 1000.0, angle);
-  const Config config = jet_case(GetParam(), "steady");
+  const Case config = jet_case(GetParam(), "steady");
   const Particles<2> jet = fill<2>(config);
   EXPECT_GE(smallest_distance(jet), 0.5 * dp * (1.0 - 1e-9));
   double force = 0.0;
@@ -453,11 +453,11 @@ TEST_P(JetInlet, SteadyStartFillsTheAnalyticJet) {
   const Box<2> bounds = geometry_->bounds();
   std::mt19937 random(13);
   std::uniform_real_distribution<double> x(bounds.low[0], config.plate.end), y(0.0, bounds.high[1]);
-  const Vec<2> inlet = {{analytic.axis_position() - config.jet.inlet_distance * width * along_[0],
-                         -config.jet.inlet_distance * width * along_[1]}};
+  const Vector<2> inlet = {{analytic.axis_position() - config.jet.inlet_distance * width * along_[0],
+                            -config.jet.inlet_distance * width * along_[1]}};
   int inside = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    const Vec<2> point{{x(random), y(random)}};
+    const Vector<2> point{{x(random), y(random)}};
     const bool beyond_plate = point[0] < config.plate.begin && point[1] < width;
     if (beyond_plate || !analytic.contains(point) || dot(point - inlet, along_) < 0.0) continue;
     ++inside;
@@ -474,12 +474,12 @@ TEST(Tank, WallNormalsPointIntoTheFluid) {
   for (const char* walls : {"particles", "mirror"}) {
     const auto geometry = make_geometry<3>(tank_case(3, walls));
     const Particles<3> particles = fill<3>(tank_case(3, walls));
-    const Vec<3> size{{0.2, 0.05, 0.1}};
+    const Vector<3> size{{0.2, 0.05, 0.1}};
     for (std::size_t i = 0; i < particles.position.size(); ++i) {
       if (particles.type[i] != ParticleType::wall) continue;
-      const Vec<3> normal = geometry->wall_normal(particles.position[i]);
+      const Vector<3> normal = geometry->wall_normal(particles.position[i]);
       EXPECT_NEAR(norm(normal), 1.0, 1e-14);
-      const Vec<3> inside = particles.position[i] + 0.01 * normal;
+      const Vector<3> inside = particles.position[i] + 0.01 * normal;
       for (int k = 0; k < 3; ++k) {
         EXPECT_GT(inside[k], 0.0);
         EXPECT_LT(inside[k], size[k]);
@@ -487,13 +487,13 @@ TEST(Tank, WallNormalsPointIntoTheFluid) {
     }
   }
   const auto tank = make_geometry<2>(shipped_case("hydrostatic.toml"));  // 0.2 m wide
-  EXPECT_EQ(tank->wall_normal({{0.1, -0.005}}), (Vec<2>{{0.0, 1.0}}));
-  EXPECT_EQ(tank->wall_normal({{-0.005, 0.1}}), (Vec<2>{{1.0, 0.0}}));
-  EXPECT_EQ(tank->wall_normal({{0.205, 0.1}}), (Vec<2>{{-1.0, 0.0}}));
-  const Vec<2> corner = tank->wall_normal({{0.205, -0.005}});
+  EXPECT_EQ(tank->wall_normal({{0.1, -0.005}}), (Vector<2>{{0.0, 1.0}}));
+  EXPECT_EQ(tank->wall_normal({{-0.005, 0.1}}), (Vector<2>{{1.0, 0.0}}));
+  EXPECT_EQ(tank->wall_normal({{0.205, 0.1}}), (Vector<2>{{-1.0, 0.0}}));
+  const Vector<2> corner = tank->wall_normal({{0.205, -0.005}});
   EXPECT_DOUBLE_EQ(corner[0], -std::sqrt(0.5));
   EXPECT_DOUBLE_EQ(corner[1], std::sqrt(0.5));
-  EXPECT_EQ(make_geometry<2>(shipped_case("jet60-quick.toml"))->wall_normal({{0.5, -0.01}}), (Vec<2>{{0.0, 1.0}}));
+  EXPECT_EQ(make_geometry<2>(shipped_case("jet60-quick.toml"))->wall_normal({{0.5, -0.01}}), (Vector<2>{{0.0, 1.0}}));
 }
 
 }  // namespace

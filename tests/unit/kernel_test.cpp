@@ -1,10 +1,10 @@
 // The kernels against the constants of numerics.md section 1.
 
-#include "impinge/kernel.hpp"
+#include "impinge/particles/kernel.hpp"
 
 #include <gtest/gtest.h>
 
-#include "impinge/types.hpp"
+#include "impinge/core/vector.hpp"
 
 namespace impinge {
 namespace {
@@ -17,7 +17,7 @@ double relative_density_below_surface(int depth) {
   double sum = 0.0;
   for (int x = -3; x <= 3; ++x)
     for (int y = -3; y <= depth; ++y)
-      if (x != 0 || y != 0) sum += NonSingularKernel::weight(norm(Vec<2>{{1.0 * x, 1.0 * y}}), radius);
+      if (x != 0 || y != 0) sum += NonSingularKernel::weight(norm(Vector<2>{{1.0 * x, 1.0 * y}}), radius);
   return sum / lattice_sums<2>(KernelType::non_singular, radius).number_density;
 }
 

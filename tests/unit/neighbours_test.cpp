@@ -1,6 +1,6 @@
 // The neighbour search against brute force.
 
-#include "impinge/neighbours.hpp"
+#include "impinge/particles/neighbours.hpp"
 
 #include <map>
 #include <numeric>
@@ -246,7 +246,7 @@ TYPED_TEST(Neighbours, OfASingleColumnHaveOnePair) {
   Particles<TestFixture::Dim> particles;
   for (const ParticleType type : {ParticleType::ghost, ParticleType::wall, ParticleType::fluid}) {
     const int i = particles.owned;
-    Vec<TestFixture::Dim> position;
+    Vector<TestFixture::Dim> position;
     position.component.fill(1.0);
     position[0] += i;
     particles.append({position, {}, 0.0, 0.0, i, type});

@@ -1,6 +1,6 @@
 // The MPS operators: exact where the lattice makes them so, conserving on any cloud.
 
-#include "impinge/operators.hpp"
+#include "impinge/method/operators.hpp"
 
 #include <cmath>
 
@@ -12,8 +12,8 @@ namespace {
 
 /// u_k = (k + 2) x_k + 3 x_0 - x_1 + 1.
 template <int Dim>
-Vec<Dim> linear_velocity(const Vec<Dim>& x) {
-  Vec<Dim> u;
+Vector<Dim> linear_velocity(const Vector<Dim>& x) {
+  Vector<Dim> u;
   for (int k = 0; k < Dim; ++k) u[k] = (k + 2) * x[k] + 3.0 * x[0] - x[1] + 1.0;
   return u;
 }
@@ -24,14 +24,14 @@ constexpr double trace = Dim == 2 ? 2 + 3 + 2 : 2 + 3 + 4 + 2;  // of its gradie
 template <int Dim>
 void set_linear_fields(Particles<Dim>& particles) {
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
-    const Vec<Dim> x = particles.position[i];
+    const Vector<Dim> x = particles.position[i];
     particles.velocity[i] = linear_velocity(x);
     particles.pressure[i] = 7.0 + 2.0 * x[0] - 3.0 * x[Dim - 1];
   }
 }
 
 template <int Dim>
-void expect_gradient_of_linear_pressure(const Vec<Dim>& gradient, double tolerance) {
+void expect_gradient_of_linear_pressure(const Vector<Dim>& gradient, double tolerance) {
   for (int k = 0; k < Dim; ++k) EXPECT_NEAR(gradient[k], k == 0 ? 2.0 : k == Dim - 1 ? -3.0 : 0.0, tolerance);
 }
 
@@ -57,7 +57,7 @@ TYPED_TEST(Operators, PackingIsTheSumOfWendlandsKernelWithEitherKernel) {
     const Cloud<Dim> lattice(0.0, kernel);
     EXPECT_NEAR(packing(lattice.near, kernel, lattice.centre()), lattice.sums.packing, 1e-12);
     const Cloud<Dim> cloud(0.2, kernel);
-    const Vec<Dim> centre = cloud.particles.position[static_cast<std::size_t>(cloud.centre())];
+    const Vector<Dim> centre = cloud.particles.position[static_cast<std::size_t>(cloud.centre())];
     double sum = 0.0;
     for (int j = 0; j < cloud.particles.owned; ++j) {
       const double q = std::min(cloud.distance(j, centre) / near_radius, 1.0);
@@ -71,7 +71,7 @@ TYPED_TEST(Operators, AsymmetryIsThatOfAFlatSurface) {
   constexpr int Dim = TypeParam::value;
   const Cloud<Dim> lattice(0.0);
   EXPECT_NEAR(norm(lattice.asymmetry_of(lattice.centre())), 0.0, 1e-14);
-  Vec<Dim> outward;
+  Vector<Dim> outward;
   outward[Dim - 1] = lattice.sums.surface_asymmetry;
   EXPECT_NEAR(norm(lattice.asymmetry_of(lattice.on_surface()) - outward), 0.0, 1e-14);
 }
@@ -93,7 +93,7 @@ TYPED_TEST(Operators, CorrectedOnesAreExactOnLinearFieldsOfAnyCloud) {
     Cloud<Dim> cloud(0.2, kernel);
     const Particles<Dim>& p = cloud.particles;
     set_linear_fields(cloud.particles);
-    const std::vector<Vec<Dim>> no_wall(p.position.size());
+    const std::vector<Vector<Dim>> no_wall(p.position.size());
     const double n0 = cloud.sums.number_density;
     for (const int i : {cloud.centre(), cloud.on_surface()}) {
       EXPECT_GT(std::abs(divergence<Dim>(cloud.near, p.position, p.velocity, n0, i) - trace<Dim>), 0.01);
@@ -115,13 +115,13 @@ TYPED_TEST(Operators, CorrectedGradientPushesFromACrowdWhereItsBaseIsLow) {
   const int i = cloud.centre();
   const double n0 = cloud.sums.number_density;
   const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
-  const Vec<Dim> even = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 3.0, correction, n0, i);
-  const Vec<Dim> push = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 1.0, correction, n0, i);
-  EXPECT_EQ(even, Vec<Dim>{});
-  Vec<Dim> crowd;
+  const Vector<Dim> even = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 3.0, correction, n0, i);
+  const Vector<Dim> push = corrected_gradient<Dim>(cloud.near, p.position, p.pressure, 1.0, correction, n0, i);
+  EXPECT_EQ(even, Vector<Dim>{});
+  Vector<Dim> crowd;
   for (int k = cloud.near.begin(i); k < cloud.near.end(i); ++k) {
     const auto pair = static_cast<std::size_t>(k);
-    const Vec<Dim> offset =
+    const Vector<Dim> offset =
         p.position[static_cast<std::size_t>(cloud.near.index[pair])] - p.position[static_cast<std::size_t>(i)];
     crowd += 2.0 * Dim / n0 * cloud.near.weight[pair] / dot(offset, offset) * offset;
   }
@@ -134,13 +134,13 @@ TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFieldsAndKnowsNoWalls) {
     Cloud<Dim> cloud(0.2, kernel);
     Particles<Dim>& p = cloud.particles;
     set_linear_fields(cloud.particles);
-    Vec<Dim> displacement;
+    Vector<Dim> displacement;
     for (int k = 0; k < Dim; ++k) displacement[k] = 0.1 - 0.07 * k;
     const auto expect_exact = [&](int i) {
-      const Vec<Dim> centre = p.position[static_cast<std::size_t>(i)];
-      const Vec<Dim> expected = linear_velocity(centre + displacement) - linear_velocity(centre);
-      const Vec<Dim> change = velocity_change_along<Dim>(cloud.near, p.position, p.velocity, p.type, displacement,
-                                                         cloud.sums.number_density, i);
+      const Vector<Dim> centre = p.position[static_cast<std::size_t>(i)];
+      const Vector<Dim> expected = linear_velocity(centre + displacement) - linear_velocity(centre);
+      const Vector<Dim> change = velocity_change_along<Dim>(cloud.near, p.position, p.velocity, p.type, displacement,
+                                                            cloud.sums.number_density, i);
       EXPECT_NEAR(norm(change - expected), 0.0, 1e-10);
     };
     expect_exact(cloud.centre());
@@ -158,9 +158,9 @@ TYPED_TEST(Operators, VelocityChangesNoFurtherThanToTheNeighbours) {
   constexpr int Dim = TypeParam::value;
   Cloud<Dim> lattice(0.0);
   set_linear_fields(lattice.particles);
-  Vec<Dim> displacement;
+  Vector<Dim> displacement;
   displacement[Dim - 1] = 5.0;
-  const Vec<Dim> change =
+  const Vector<Dim> change =
       velocity_change_along<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
                                  lattice.particles.type, displacement, lattice.sums.number_density, lattice.centre());
   EXPECT_NEAR(change[Dim - 1], Dim == 2 ? 6.0 : 8.0, 1e-12);  // of the neighbour at (2, 0) or (0, 0, 2)
@@ -172,13 +172,13 @@ TYPED_TEST(Operators, VelocityLaplacianIsExactOnQuadraticFields) {
     Cloud<Dim> lattice(0.0, kernel);
     const double factor = 2.0 * Dim / (lattice.far_sums.number_density * lattice.far_sums.lambda);
     for (std::size_t i = 0; i < lattice.particles.velocity.size(); ++i) {
-      const Vec<Dim> x = lattice.particles.position[i];
+      const Vector<Dim> x = lattice.particles.position[i];
       lattice.particles.velocity[i] = {};
       lattice.particles.velocity[i][0] = x[0] * x[0] + 3.0 * x[1] * x[1] + 2.0 * x[0] * x[1] - 5.0 * x[1];
       lattice.particles.velocity[i][1] = -2.0 * x[Dim - 1] * x[Dim - 1] + x[0];
     }
-    const Vec<Dim> laplacian = velocity_laplacian<Dim>(lattice.far_row(lattice.centre()), lattice.particles.velocity,
-                                                       factor, lattice.centre());
+    const Vector<Dim> laplacian = velocity_laplacian<Dim>(lattice.far_row(lattice.centre()), lattice.particles.velocity,
+                                                          factor, lattice.centre());
     EXPECT_NEAR(laplacian[0], 8.0, 1e-11);
     EXPECT_NEAR(laplacian[1], -4.0, 1e-11);
     EXPECT_EQ(laplacian[Dim - 1], Dim == 2 ? laplacian[1] : 0.0);
@@ -204,7 +204,7 @@ TYPED_TEST(Operators, PressureForcesConserveMomentum) {
 /// Particles with hand-made pairs: everybody sees everybody.
 template <int Dim>
 struct Group {
-  std::vector<Vec<Dim>> position, velocity;
+  std::vector<Vector<Dim>> position, velocity;
   std::vector<double> pressure;
   std::vector<ParticleType> type;
 
@@ -234,11 +234,11 @@ struct Group {
     return list;
   }
 
-  std::vector<Vec<Dim>> no_wall() const { return std::vector<Vec<Dim>>(type.size()); }
+  std::vector<Vector<Dim>> no_wall() const { return std::vector<Vector<Dim>>(type.size()); }
 
   /// With dt = 0.1, distance 0.5 and restitution 0.2.
-  Vec<Dim> change(int i) const { return change(i, no_wall()); }
-  Vec<Dim> change(int i, const std::vector<Vec<Dim>>& normal) const {
+  Vector<Dim> change(int i) const { return change(i, no_wall()); }
+  Vector<Dim> change(int i, const std::vector<Vector<Dim>>& normal) const {
     return collision<Dim>(pairs(), position, velocity, type, normal, 0.1, 0.5, 0.2, i);
   }
 };
@@ -247,13 +247,13 @@ TYPED_TEST(Operators, AreNotCorrectedWhereNeighboursAreTooFewOrInLine) {
   constexpr int Dim = TypeParam::value;
   const double n0 = lattice_sums<Dim>(KernelType::non_singular, near_radius).number_density;
   Group<Dim> group;
-  Vec<Dim> displacement;
+  Vector<Dim> displacement;
   displacement.component.fill(1.0);
   const auto expect_uncorrected = [&] {
     EXPECT_EQ(moment_correction<Dim>(group.pairs(), group.position, n0, 0).row, Matrix<Dim>::identity().row);
     EXPECT_EQ(
         velocity_change_along<Dim>(group.pairs(), group.position, group.velocity, group.type, displacement, n0, 0),
-        Vec<Dim>{});
+        Vector<Dim>{});
   };
   group.add(0.0, 0.0, 1.0, 0.0);
   expect_uncorrected();
@@ -279,14 +279,14 @@ TYPED_TEST(Operators, RepulsionPartsFluidThatIsTooNear) {
   const auto of = [&](int i, double distance) {
     return repulsion<Dim>(pair.pairs(), pair.position, pair.type, distance, spacing, i);
   };
-  const Vec<Dim> push = of(0, 0.9);  // at 0.625 dp
+  const Vector<Dim> push = of(0, 0.9);  // at 0.625 dp
   EXPECT_NEAR(push[0], -0.275 * 0.6, 1e-14);
   EXPECT_NEAR(push[1], 0.275 * 0.8, 1e-14);
   EXPECT_EQ(of(1, 0.9), -1.0 * push);
-  EXPECT_EQ(of(0, 0.62), Vec<Dim>{});
-  EXPECT_EQ(of(0, 0.0), Vec<Dim>{});
+  EXPECT_EQ(of(0, 0.62), Vector<Dim>{});
+  EXPECT_EQ(of(0, 0.0), Vector<Dim>{});
   pair.type[1] = ParticleType::wall;
-  EXPECT_EQ(of(0, 0.9), Vec<Dim>{});
+  EXPECT_EQ(of(0, 0.9), Vector<Dim>{});
 }
 
 TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
@@ -340,7 +340,7 @@ TYPED_TEST(Operators, PressureGradientIsThatOfEquation4ForAPair) {
   pair.add(0.6, 0.8, 0.0, 0.0);
   pair.add(0.0, 1.0, 0.0, 0.0, ParticleType::ghost);
   const double n0 = 4.0;
-  const Vec<Dim> gradient =
+  const Vector<Dim> gradient =
       pressure_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, pair.type, pair.no_wall(), n0, 0);
   const double size = Dim / n0 * (1.0 + 2.0) * NonSingularKernel::weight(1.0, near_radius);
   EXPECT_NEAR(gradient[0], 0.6 * size, 1e-14);
@@ -352,10 +352,10 @@ TYPED_TEST(Operators, PressureGradientOfAWallIsAlongItsNormal) {
   Group<Dim> pair;
   pair.add(0.0, 0.0, 0.0, 0.0);
   pair.add(0.6, 0.8, 0.0, 0.0, ParticleType::wall);
-  std::vector<Vec<Dim>> normal = pair.no_wall();
+  std::vector<Vector<Dim>> normal = pair.no_wall();
   normal[1][1] = -1.0;
   const double n0 = 4.0;
-  const Vec<Dim> gradient =
+  const Vector<Dim> gradient =
       pressure_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, pair.type, normal, n0, 0);
   const double size = Dim / n0 * (1.0 + 2.0) * NonSingularKernel::weight(1.0, near_radius);
   EXPECT_EQ(gradient[0], 0.0);
@@ -367,8 +367,8 @@ TYPED_TEST(Operators, CollidingFluidParticlesReboundWithTheRestitution) {
   Group<Dim> pair;
   pair.add(0.0, 0.0, 1.0, 0.5);
   pair.add(0.55, 0.0, -1.0, -0.25);  // 0.35 apart after the step
-  const Vec<Dim> first = pair.change(0);
-  const Vec<Dim> second = pair.change(1);
+  const Vector<Dim> first = pair.change(0);
+  const Vector<Dim> second = pair.change(1);
   EXPECT_NEAR(norm(first + second), 0.0, 1e-15);
   const double approach = (1.0 + first[0]) - (-1.0 + second[0]);
   EXPECT_NEAR(approach, -0.2 * 2.0, 1e-15);
@@ -385,7 +385,7 @@ TYPED_TEST(Operators, WallsAndInletDoNotYieldInCollisions) {
     pair.add(0.0, 0.0, 0.0, 0.0, rigid);
     auto normal = pair.no_wall();
     if (is_wall) normal[1][1] = 1.0;
-    const Vec<Dim> change = pair.change(0, normal);
+    const Vector<Dim> change = pair.change(0, normal);
     EXPECT_NEAR(-1.0 + change[1], 0.2, 1e-15);
     EXPECT_EQ(change[0], 0.0);
   }
@@ -409,12 +409,12 @@ TYPED_TEST(Operators, OnlyApproachingPairsThatWouldBeTooNearCollide) {
 TYPED_TEST(Operators, CollisionsConserveMomentum) {
   constexpr int Dim = TypeParam::value;
   const Cloud<Dim> cloud(0.45);
-  const std::vector<Vec<Dim>> no_wall(cloud.particles.type.size());
-  Vec<Dim> sum;
+  const std::vector<Vector<Dim>> no_wall(cloud.particles.type.size());
+  Vector<Dim> sum;
   int collided = 0;
   for (int i = 0; i < cloud.particles.owned; ++i) {
-    const Vec<Dim> change = collision<Dim>(cloud.near, cloud.particles.position, cloud.particles.velocity,
-                                           cloud.particles.type, no_wall, 0.1, 0.8, 0.2, i);
+    const Vector<Dim> change = collision<Dim>(cloud.near, cloud.particles.position, cloud.particles.velocity,
+                                              cloud.particles.type, no_wall, 0.1, 0.8, 0.2, i);
     sum += change;
     collided += norm(change) > 0.0;
   }
@@ -430,16 +430,16 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   std::vector<double> density{-1.0};
   number_density(none, density);
   EXPECT_EQ(density[0], 0.0);
-  EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), Vec<Dim>{});
+  EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), Vector<Dim>{});
   EXPECT_EQ(corrected_divergence<Dim>(none, single.position, single.velocity, single.no_wall(), Matrix<Dim>::identity(),
                                       4.0, 0),
             0.0);
   EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, 1.0, Matrix<Dim>::identity(), 4.0, 0),
-            Vec<Dim>{});
+            Vector<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);
-  EXPECT_EQ(velocity_laplacian<Dim>(PairRow{}, single.velocity, 4.0, 0), Vec<Dim>{});
+  EXPECT_EQ(velocity_laplacian<Dim>(PairRow{}, single.velocity, 4.0, 0), Vector<Dim>{});
   EXPECT_EQ(pressure_gradient<Dim>(none, single.position, single.pressure, single.type, single.no_wall(), 4.0, 0),
-            Vec<Dim>{});
+            Vector<Dim>{});
 }
 
 }  // namespace

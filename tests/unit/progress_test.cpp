@@ -1,6 +1,6 @@
 // The text of the progress line.
 
-#include "impinge/progress.hpp"
+#include "impinge/programs/progress.hpp"
 
 #include <gtest/gtest.h>
 

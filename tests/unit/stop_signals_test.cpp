@@ -1,6 +1,6 @@
 // Signals: noted, the second SIGINT ends the process.
 
-#include "impinge/stop_signals.hpp"
+#include "impinge/programs/stop_signals.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,10 +1,9 @@
 // Small matrices, and images of points.
 
-#include "impinge/types.hpp"
-
 #include <random>
 
 #include "dimensions.hpp"
+#include "impinge/core/vector.hpp"
 
 namespace impinge {
 namespace {
@@ -14,14 +13,14 @@ class Types : public testing::Test {
  protected:
   static constexpr int Dim = Dimension::value;
 
-  Vec<Dim> vector() {
-    Vec<Dim> result;
+  Vector<Dim> vector() {
+    Vector<Dim> result;
     for (double& x : result.component) x = uniform_(random_);
     return result;
   }
   Matrix<Dim> matrix() {
     Matrix<Dim> result;
-    for (Vec<Dim>& row : result.row) row = vector();
+    for (Vector<Dim>& row : result.row) row = vector();
     return result;
   }
 

@@ -1,7 +1,7 @@
 // The measures of a run, on particles laid out on the analytic jet and displaced from it by known amounts; the report
 // on a directory.
 
-#include "impinge/post/validation.hpp"
+#include "impinge/validation/validation.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double window = 0.5;  // of the wall average [s]
 constexpr std::int64_t step = 1000;
 
-Config jet_case(double angle, double spacing = 0.01, const std::string& more = "") {
+Case jet_case(double angle, double spacing = 0.01, const std::string& more = "") {
   return parse_case({{"exact.toml", fmt::format(R"(geometry = "jet"
 jet.width = 0.4
 jet.speed = 1.5
@@ -44,7 +44,7 @@ time.dt = 1e-4
 /// Wall particles, and fluid on a square lattice inside the analytic jet up to the inlet, with the analytic velocity
 /// and pressure. Every column of the lattice is shifted in height by another fraction of the spacing, so that counting
 /// particles measures a thickness to much less than the spacing.
-Particles<2> exact_state(const Config& config) {
+Particles<2> exact_state(const Case& config) {
   const AnalyticJet jet = analytic_jet(config);
   const double dp = config.particles.spacing;
   Particles<2> particles;
@@ -63,15 +63,15 @@ Particles<2> exact_state(const Config& config) {
 }
 
 /// Free-surface particles that lie `outward` [m] further out than half a spacing below the analytic surface.
-void append_surface(const Config& config, double outward, Particles<2>& particles) {
+void append_surface(const Case& config, double outward, Particles<2>& particles) {
   const AnalyticJet jet = analytic_jet(config);
   const double dp = config.particles.spacing;
   for (const Side side : {Side::h1, Side::h2}) {
-    for (const Vec<2>& point : jet.surface(side, config.jet.width, 2.0 * config.jet.width, dp)) {
+    for (const Vector<2>& point : jet.surface(side, config.jet.width, 2.0 * config.jet.width, dp)) {
       const auto surface = jet.nearest_surface(point);
       const double sign = side == Side::h1 ? 1.0 : -1.0;  // the fluid lies to the right or left of the stream
-      const Vec<2> inward = (sign / jet.speed()) * Vec<2>{{surface.velocity[1], -surface.velocity[0]}};
-      const Vec<2> position = point + (0.5 * dp - outward) * inward;
+      const Vector<2> inward = (sign / jet.speed()) * Vector<2>{{surface.velocity[1], -surface.velocity[0]}};
+      const Vector<2> position = point + (0.5 * dp - outward) * inward;
       const auto state = jet.state(position);
       particles.append({position, state ? state->velocity : surface.velocity, state ? state->pressure : 0.0, 0.0,
                         particles.owned, ParticleType::fluid});
@@ -86,7 +86,7 @@ void change_fluid(Particles<2>& particles, const std::function<void(std::size_t)
     if (particles.type[i] == ParticleType::fluid) change(i);
 }
 
-JetMetrics compare(const Config& config, const std::vector<Particles<2>>& snapshots) {
+JetMetrics compare(const Case& config, const std::vector<Particles<2>>& snapshots) {
   JetComparison comparison(config);
   comparison.set_wall_average(snapshots.back(), window);
   for (const auto& snapshot : snapshots) comparison.add_snapshot(snapshot);
@@ -95,7 +95,7 @@ JetMetrics compare(const Config& config, const std::vector<Particles<2>>& snapsh
 
 class ExactJet : public testing::TestWithParam<double> {
  protected:
-  Config config = jet_case(GetParam());
+  Case config = jet_case(GetParam());
   AnalyticJet jet = analytic_jet(config);
   Particles<2> particles = exact_state(config);
 };
@@ -215,7 +215,7 @@ TEST_P(ExactJet, PressureErrorsOfSnapshotsAverageOut) {
 }
 
 TEST_P(ExactJet, VelocityErrorsComeOutAsMade) {
-  change_fluid(particles, [&](std::size_t i) { particles.velocity[i] += jet.speed() * Vec<2>{{0.03, -0.04}}; });
+  change_fluid(particles, [&](std::size_t i) { particles.velocity[i] += jet.speed() * Vector<2>{{0.03, -0.04}}; });
   const JetMetrics metrics = compare(config, {particles});
   EXPECT_NEAR(metrics.velocity_rms.value(), 0.05, 1e-12);
   EXPECT_NEAR(metrics.field_l2.value(), 0.0, 1e-12);
@@ -239,7 +239,7 @@ TEST_P(ExactJet, ParticlesOutsideTheFluidHaveAnalyticPressureZero) {
     if (std::abs(particles.position[i][0] / config.jet.width - 1.0) <= 3.0)
       reference += std::pow(particles.pressure[i], 2);
   });
-  const Vec<2> outside{{3.0 * config.jet.width, 2.0 * config.jet.width}};
+  const Vector<2> outside{{3.0 * config.jet.width, 2.0 * config.jet.width}};
   ASSERT_FALSE(jet.contains(outside));
   particles.append({outside, jet.nearest_surface(outside).velocity, 700.0, 0.0, particles.owned, ParticleType::fluid});
   const JetMetrics metrics = compare(config, {particles});
@@ -294,7 +294,7 @@ TEST_P(ExactJet, NumbersThatAreNotFiniteGiveNoMetric) {
 }
 
 TEST(JetComparison, PlateThatEndsBeforeTheFilmsGivesNone) {
-  const Config config = jet_case(60.0, 0.02, "plate.begin = -0.6\nplate.end = 0.58\n");
+  const Case config = jet_case(60.0, 0.02, "plate.begin = -0.6\nplate.end = 0.58\n");
   JetComparison comparison(config);
   comparison.add_snapshot(exact_state(config));
   EXPECT_FALSE(comparison.metrics().film_h1);
@@ -314,7 +314,7 @@ class RunDirectory : public testing::Test {
   RunDirectory() { fs::create_directories(directory); }
   ~RunDirectory() override { fs::remove_all(directory); }
 
-  std::string save(const Config& of, std::int64_t at_step, double time, const Particles<2>& state,
+  std::string save(const Case& of, std::int64_t at_step, double time, const Particles<2>& state,
                    const std::string& status = "running", double window_end = 0.0) {
     const std::string path = snapshot_path(directory, of.name, at_step);
     write_snapshot(MPI_COMM_SELF, path, state,
@@ -349,7 +349,7 @@ class RunDirectory : public testing::Test {
   }
 
   std::string directory = (fs::temp_directory_path() / fmt::format("impinge_validation_{}", getpid())).string();
-  Config config = jet_case(60.0, 0.02);
+  Case config = jet_case(60.0, 0.02);
   Particles<2> particles = exact_state(config);
   std::int64_t fluid = std::count(particles.type.begin(), particles.type.end(), ParticleType::fluid);
 };
@@ -381,7 +381,7 @@ TEST_F(RunDirectory, BalanceIsTheHistorysAgainstTheLastSnapshot) {
   write_history(step + 1, 20, 4, 15);  // of another step: the history's own count
   EXPECT_EQ(validate(directory).particle_balance.value(), 1);
   std::ofstream(directory + "/" + config.name + "_history.csv") << "step,in,out\n1,2,3\n";
-  EXPECT_NE(error_of<OutputError>().find("'fluid'"), std::string::npos);
+  EXPECT_NE(error_of<FileError>().find("'fluid'"), std::string::npos);
 }
 
 TEST_F(RunDirectory, FailedRunIsReportedWithoutNumbersThatAreNotFinite) {
@@ -464,7 +464,7 @@ TEST_F(RunDirectory, WrongInputIsToldApart) {
   EXPECT_NE(error_of<InputError>().find("no such directory"), std::string::npos);
 
   fs::create_directories(directory);
-  const Config tank = parse_case({{"tank.toml", R"(geometry = "tank"
+  const Case tank = parse_case({{"tank.toml", R"(geometry = "tank"
 fluid.gravity = [0.0, -9.81]
 particles.spacing = 0.01
 tank.size = [0.2, 0.3]
@@ -476,7 +476,7 @@ time.dt = 1e-3
   EXPECT_NE(error_of<InputError>().find("not a jet"), std::string::npos);
 
   std::ofstream(snapshot_path(directory, "tank", 2)) << "not HDF5";
-  EXPECT_NE(error_of<OutputError>().find("tank_00000002.vtkhdf"), std::string::npos);
+  EXPECT_NE(error_of<FileError>().find("tank_00000002.vtkhdf"), std::string::npos);
 }
 
 }  // namespace

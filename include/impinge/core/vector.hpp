@@ -1,0 +1,105 @@
+#pragma once
+// Points, vectors, matrices and boxes in two and three dimensions. SI units throughout.
+
+#include <array>
+#include <cmath>
+
+namespace impinge {
+
+/// A point or vector in Dim dimensions [unit of its use].
+template <int Dim>
+struct Vector {
+  std::array<double, Dim> component{};
+
+  double& operator[](int k) { return component[static_cast<std::size_t>(k)]; }
+  double operator[](int k) const { return component[static_cast<std::size_t>(k)]; }
+
+  Vector& operator+=(const Vector& other) {
+    for (int k = 0; k < Dim; ++k) (*this)[k] += other[k];
+    return *this;
+  }
+  Vector& operator-=(const Vector& other) {
+    for (int k = 0; k < Dim; ++k) (*this)[k] -= other[k];
+    return *this;
+  }
+  Vector& operator*=(double factor) {
+    for (int k = 0; k < Dim; ++k) (*this)[k] *= factor;
+    return *this;
+  }
+  friend Vector operator+(Vector a, const Vector& b) { return a += b; }
+  friend Vector operator-(Vector a, const Vector& b) { return a -= b; }
+  friend Vector operator*(double factor, Vector a) { return a *= factor; }
+  friend bool operator==(const Vector&, const Vector&) = default;
+};
+
+template <int Dim>
+double dot(const Vector<Dim>& a, const Vector<Dim>& b) {
+  double sum = 0.0;
+  for (int k = 0; k < Dim; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+template <int Dim>
+double norm(const Vector<Dim>& a) {
+  return std::sqrt(dot(a, a));
+}
+
+/// A Dim x Dim matrix by rows [unit of its use].
+template <int Dim>
+struct Matrix {
+  std::array<Vector<Dim>, Dim> row{};
+
+  static Matrix identity() {
+    Matrix result;
+    for (int k = 0; k < Dim; ++k) result.row[static_cast<std::size_t>(k)][k] = 1.0;
+    return result;
+  }
+
+  /// Adds a b^T.
+  void add_product(const Vector<Dim>& a, const Vector<Dim>& b) {
+    for (int k = 0; k < Dim; ++k) row[static_cast<std::size_t>(k)] += a[k] * b;
+  }
+
+  friend Matrix operator*(double factor, Matrix m) {
+    for (Vector<Dim>& r : m.row) r *= factor;
+    return m;
+  }
+  friend Vector<Dim> operator*(const Matrix& m, const Vector<Dim>& v) {
+    Vector<Dim> result;
+    for (int k = 0; k < Dim; ++k) result[k] = dot(m.row[static_cast<std::size_t>(k)], v);
+    return result;
+  }
+};
+
+/// The matrix with m adjugate(m) = determinant(m) identity.
+inline Matrix<2> adjugate(const Matrix<2>& m) {
+  return {{{{{m.row[1][1], -m.row[0][1]}}, {{-m.row[1][0], m.row[0][0]}}}}};
+}
+inline Matrix<3> adjugate(const Matrix<3>& m) {
+  Matrix<3> result;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      const Vector<3>& one = m.row[static_cast<std::size_t>((c + 1) % 3)];
+      const Vector<3>& two = m.row[static_cast<std::size_t>((c + 2) % 3)];
+      result.row[static_cast<std::size_t>(r)][c] =
+          one[(r + 1) % 3] * two[(r + 2) % 3] - one[(r + 2) % 3] * two[(r + 1) % 3];
+    }
+  }
+  return result;
+}
+
+template <int Dim>
+double determinant(const Matrix<Dim>& m) {
+  const Matrix<Dim> adjoint = adjugate(m);
+  double sum = 0.0;
+  for (int k = 0; k < Dim; ++k) sum += m.row[0][k] * adjoint.row[static_cast<std::size_t>(k)][0];
+  return sum;
+}
+
+/// Axis-aligned box [m].
+template <int Dim>
+struct Box {
+  Vector<Dim> low, high;
+};
+
+}  // namespace impinge

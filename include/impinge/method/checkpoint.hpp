@@ -1,0 +1,31 @@
+#pragma once
+// What a run needs to go on from the end of a step as if it had never stopped.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "impinge/particles/particles.hpp"
+
+namespace impinge {
+
+/// This rank's rows of the preconditioner's coarse matrix.
+struct CoarseRows {
+  std::vector<std::int64_t> cell;    ///< place of each row's cell among the cells of this rank
+  std::vector<std::int64_t> length;  ///< entries of each row
+  std::vector<std::int64_t> column;  ///< global, row after row
+  std::vector<double> value;
+};
+
+/// The state between two steps. `owner` and `coarse` are empty where the number of ranks has changed since it was
+/// saved.
+template <int Dim>
+struct Checkpoint {
+  Particles<Dim> particles;                    ///< owned
+  std::vector<Vector<Dim>> searched_position;  ///< where they stood when their neighbours were searched [m]
+  std::map<std::string, double> numbers;       ///< all that is one number, the same on every rank
+  std::vector<int> owner;                      ///< rank of each background cell, the same on every rank
+  CoarseRows coarse;
+};
+
+}  // namespace impinge

@@ -1,0 +1,93 @@
+#pragma once
+// The MPS operators: plain loops over the pair lists. They know neither MPI nor PETSc. Owned particles first, then the
+// halo, in every array; results are written for owned particles only, and are zero where the row is empty.
+
+#include <cstdint>
+#include <span>
+
+#include "impinge/core/vector.hpp"
+#include "impinge/particles/neighbours.hpp"
+
+namespace impinge {
+
+/// Particle number density n_i = sum_{j != i} W(r_ij) [-] (Koshizuka & Oka 1996).
+void number_density(const PairList& near, std::span<double> density);
+
+/// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. The lattice and clouds that a flow has stirred have
+/// the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at zero,
+/// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`: the one of the weights.
+double packing(const PairList& near, KernelType kernel, int i);
+
+/// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &
+/// Wan 2012).
+template <int Dim>
+Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
+
+/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice;
+/// where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface), L_i is the identity, too.
+template <int Dim>
+Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
+
+/// Divergence Dim/n0 sum (u_j - u_i).r_ij W / r_ij^2 [1/s] (paper eq. 5).
+template <int Dim>
+double divergence(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                  double n0, int i);
+
+/// Corrected divergence Dim/n0 sum (u_j - u_i).L_i r_ij W / r_ij^2 [1/s], exact on linear velocities. Walls let the
+/// fluid slip: of a pair with a wall, whose normal `wall_normal` has for its particles and ghosts and which is zero
+/// elsewhere, only the relative velocity along the normal counts.
+template <int Dim>
+double corrected_divergence(const PairList& near, std::span<const Vector<Dim>> position,
+                            std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
+                            const Matrix<Dim>& correction, double n0, int i);
+
+/// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
+/// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
+/// pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall particles.
+template <int Dim>
+Vector<Dim> pressure_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                              std::span<const double> pressure, std::span<const ParticleType> type,
+                              std::span<const Vector<Dim>> wall_normal, double n0, int i);
+
+/// Corrected pressure gradient Dim/n0 L_i sum (p_j - base) r_ij W / r_ij^2 [Pa/m]. With base = p_i it is exact on
+/// linear pressures; the smallest pressure around (Koshizuka & Oka 1996) adds a push away from where neighbours crowd.
+template <int Dim>
+Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                               std::span<const double> pressure, double base, const Matrix<Dim>& correction, double n0,
+                               int i);
+
+/// The smallest pressure of particle i and its neighbours [Pa].
+double least_pressure(const PairList& near, std::span<const double> pressure, int i);
+
+/// Push away from the fluid neighbours that are too near, sum (distance - r_ij/dp) (r_i - r_j)/r_ij [-] over those
+/// nearer than `distance` [dp]; equal and opposite for the two of a pair. `spacing`: dp [m].
+template <int Dim>
+Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> position, std::span<const ParticleType> type,
+                      double distance, double spacing, int i);
+
+/// Change of velocity over a displacement, (delta . grad) u [m/s], from the neighbours that are no wall; exact on
+/// linear velocities, zero where the neighbours are too few. No component of the new velocity leaves the range of the
+/// neighbours' and its own: in spray an extrapolation would feed on itself.
+template <int Dim>
+Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<Dim>> position,
+                                  std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                                  const Vector<Dim>& displacement, double n0, int i);
+
+/// Mean of the neighbours' values by their weights; 0 without a neighbour.
+double weighted_mean(const PairList& near, std::span<const double> value, int i);
+
+/// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
+/// `factor` = 2 Dim/(n0 lambda) [1/m^2].
+template <int Dim>
+Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> velocity, double factor, int i);
+
+/// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
+/// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
+/// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
+/// not yield. A wall is smooth: the normal of a pair with it is the wall's.
+template <int Dim>
+Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
+                      std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution, int i);
+
+}  // namespace impinge

@@ -1,0 +1,88 @@
+#pragma once
+// What a run of the method can be told, besides its scene. SI units; lengths that the method scales are in dp.
+
+#include <array>
+
+#include "impinge/parallel/graph_partition.hpp"
+#include "impinge/particles/kernel.hpp"
+
+namespace impinge {
+
+enum class Scheme { consistent, paper };
+enum class WallModel { mirror, particles };
+
+struct FluidSettings {
+  double density = 1000.0;                       ///< [kg/m^3]
+  double viscosity = 0.0;                        ///< kinematic [m^2/s]
+  std::array<double, 3> gravity{0.0, 0.0, 0.0};  ///< [m/s^2]
+};
+
+struct ParticleSettings {
+  double spacing = 0.0;  ///< dp [m]
+};
+
+struct KernelSettings {
+  KernelType type = KernelType::non_singular;
+  double radius = 2.1;             ///< r_e of number density, gradient and divergence [dp]
+  double laplacian_radius = 4.01;  ///< r_e of the Laplacian [dp]
+};
+
+struct PressureSettings {
+  double gamma = 0.01;                ///< weight of the density term in the PPE source, unless density_speed is set
+  double density_speed = 0.0;         ///< speed at which a density error is corrected [u_max]; by scheme
+  bool corrected_divergence = false;  ///< divergence exact on linear velocities; by scheme
+  bool packing = false;               ///< density errors by the packing, not by the number density; by scheme
+  bool corrected_gradient = false;    ///< gradient by differences of pressure, but at the surface; by scheme
+  double tolerance = 1e-6;            ///< relative residual of the PPE solve
+  bool clamp_negative = true;         ///< set negative pressures to zero after the solve
+};
+
+struct WallSettings {
+  WallModel model = WallModel::particles;  ///< by scheme
+};
+
+struct FreeSurfaceSettings {
+  double surface_density = 0.8;    ///< n/n0 below which a particle is free surface
+  double interior_density = 0.97;  ///< n/n0 above which it is not
+  double asymmetry = 0.9;          ///< between the two: surface if |F| > asymmetry |F|0
+  bool zero_outside = false;       ///< p = 0 half a spacing outside the surface particles, not at them; by scheme
+};
+
+struct CollisionSettings {
+  double distance = 0.8;     ///< [dp]; 0 switches collisions off; by scheme
+  double restitution = 0.2;  ///< [-]
+};
+
+struct ShiftingSettings {
+  double coefficient = 0.0;       ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
+  double least_distance = 0.0;    ///< nearer pairs beside the surface drift apart [dp]; 0: none do; by scheme
+  bool correct_velocity = false;  ///< take the velocity of the new place; by scheme
+};
+
+struct TimeSettings {
+  double end = 0.0;            ///< [s]
+  double dt = 0.0;             ///< largest step [s]
+  double cfl = 0.2;            ///< dt <= cfl dp / |u|max
+  bool mean_velocity = false;  ///< particles move with the mean of the old and the new velocity; by scheme
+  double max_speed = 0.0;      ///< speed that counts as divergence [m/s]
+};
+
+/// The method's part of a case. The initial values are those of the paper's scheme; each key's unit, range and doc line
+/// stand where it is declared.
+struct MethodSettings {
+  int dimension = 2;
+  Scheme scheme = Scheme::consistent;  ///< sets the defaults that are said to be "by scheme"
+  FluidSettings fluid;
+  ParticleSettings particles;
+  KernelSettings kernel;
+  PressureSettings pressure;
+  WallSettings walls;
+  FreeSurfaceSettings free_surface;
+  CollisionSettings collision;
+  ShiftingSettings shifting;
+  TimeSettings time;
+  ParallelSettings parallel;
+  double average_start = 0.0;  ///< start of the wall-pressure average [s]; key output.average_start
+};
+
+}  // namespace impinge

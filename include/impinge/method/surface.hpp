@@ -1,0 +1,47 @@
+#pragma once
+// Zero pressure where the free surface is: half a spacing outside the centres of the surface particles.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "impinge/core/vector.hpp"
+#include "impinge/particles/kernel.hpp"
+#include "impinge/particles/neighbours.hpp"
+
+namespace impinge {
+
+/// What the Laplacian of a particle misses beyond a flat free surface. With a pressure that is linear through zero at
+/// the surface, a lattice point at the height d_g above it has the pressure -p_i d_g/d_i, so that the missing pairs are
+/// the flux -p_i sum W (1 + d_g/d_i): a weight on the diagonal, and nothing else.
+template <int Dim>
+class SurfaceClosure {
+ public:
+  /// Depth of a surface particle below the surface [dp].
+  static constexpr double least_depth = 0.5;
+
+  /// Radius in dp.
+  SurfaceClosure(KernelType type, double effective_radius);
+
+  /// The weight [-] at a depth [dp], interpolated in a table; 0 where nothing is missing.
+  double weight(double depth) const;
+
+ private:
+  std::vector<double> weight_;  // at least_depth, one step deeper, ...
+};
+
+/// Depth of particle i below the free surface [dp], at least least_depth: its distance to the planes half a spacing [m]
+/// outside the surface particles of its row, their normals along the asymmetries; the mean with weights 1/r_ij^6, so
+/// that around a bend the nearest count; infinite without any.
+/// Reads positions, asymmetries and surface marks of owned particles and halo.
+template <int Dim>
+double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> asymmetry,
+                     std::span<const std::uint8_t> free_surface, double spacing, int i);
+
+/// Unit normal of the free surface at particle i, out of the fluid, from the asymmetries of the surface particles among
+/// it and its neighbours, weighted; zero without any.
+template <int Dim>
+Vector<Dim> surface_normal(const PairList& near, std::span<const Vector<Dim>> asymmetry,
+                           std::span<const std::uint8_t> free_surface, int i);
+
+}  // namespace impinge

@@ -1,0 +1,122 @@
+#pragma once
+// Who owns which particle: background cells, their partition, migration, and the halo. No physics.
+
+#include <span>
+#include <vector>
+
+#include "impinge/parallel/exchange.hpp"
+#include "impinge/parallel/graph_partition.hpp"
+#include "impinge/particles/cell_grid.hpp"
+#include "impinge/particles/particles.hpp"
+
+namespace impinge {
+
+/// Adds the work of every owned particle to the entry of its cell in `work`. Particles outside the cells count for
+/// nothing. Not collective.
+template <int Dim>
+void add_work(const CellGrid<Dim>& cells, const Particles<Dim>& particles, std::span<int> work);
+
+/// Part of every cell, 0 to `parts` - 1, that balances `work` (per cell, the same on every rank): k-way on the graph of
+/// occupied cells (METIS on rank 0, or PTScotch on all); empty cells follow the nearest occupied one. Collective.
+template <int Dim>
+std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std::span<const int> work, int parts,
+                                  Partitioner partitioner);
+
+/// A rank that has a cell's particles in its halo, as they are or as periodic or mirror images.
+template <int Dim>
+struct HaloTarget {
+  int rank;
+  Image<Dim> image;
+  friend bool operator==(const HaloTarget&, const HaloTarget&) = default;
+};
+
+/// Appends all that have the particles of `cell` in their halo, each once. `owner`: rank of each cell. Not collective.
+template <int Dim>
+void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner, int cell,
+                         std::vector<HaloTarget<Dim>>& targets);
+
+/// Decomposition of the particles over the ranks by background cells whose edge is at least the largest effective
+/// radius. Arrays of global length exist on the cell grid only.
+template <int Dim>
+class Decomposition {
+ public:
+  /// How many parts a background cell is cut into along each axis for sorting and searching.
+  static constexpr int cell_parts = 2;
+
+  /// What build_halo sends of a particle.
+  struct HaloRecord {
+    ParticleRecord<Dim> particle;
+    PetscInt row;
+  };
+
+  /// `reach`: largest effective radius [m]. Every rank starts with no cell; call partition before migrate. Collective.
+  Decomposition(MPI_Comm comm, const Box<Dim>& box, const Edges<Dim>& edges, double reach, Partitioner partitioner);
+
+  MPI_Comm comm() const { return comm_; }
+
+  /// The background cells and the rank of each.
+  const CellGrid<Dim>& cells() const { return cells_; }
+  std::span<const int> owners() const { return owner_; }
+
+  /// How often the cells were distributed.
+  int partitions() const { return partitions_; }
+
+  /// The cells in whose order owned particles are sorted.
+  const CellGrid<Dim>& sorting_cells() const { return fine_; }
+
+  /// Assigns every cell to a rank so that the work of the particles, wherever they are now, is balanced (see
+  /// distribute_cells). Reads owned positions and types. Collective.
+  void partition(const Particles<Dim>& particles);
+
+  /// Assigns the cells as an earlier partition did, `owner`: rank of each cell. Not collective.
+  void set_owners(std::vector<int> owner, double achieved_imbalance);
+
+  /// Largest over mean work of the ranks. Collective.
+  double imbalance(const Particles<Dim>& particles) const;
+
+  /// The imbalance right after the last partition.
+  double achieved_imbalance() const { return achieved_imbalance_; }
+
+  /// True if the position lies in a cell of this rank.
+  bool owns(const Vector<Dim>& position) const;
+
+  /// Drops the halo, moves every owned particle to the rank that owns its cell, and sorts along the cells and, within a
+  /// cell, by id. Number density and free surface are not carried. Returns how many of this rank's particles were
+  /// dropped because they are outside the background grid. Collective.
+  std::int64_t migrate(Particles<Dim>& particles);
+
+  /// Appends the halo, with all that travels but the pressure impulse, and numbers the rows. Needs sorted owned
+  /// particles. Collective.
+  void build_halo(Particles<Dim>& particles);
+
+  const Halo& halo() const { return halo_; }
+
+  /// Copies the positions of owned particles to their copies in the halo, images moved. Collective.
+  void refresh_positions(Particles<Dim>& particles) const;
+
+  /// Copies directions (velocities, normals) of owned particles to their copies in the halo, mirror images reflected.
+  /// Collective.
+  void refresh_directions(std::vector<Vector<Dim>>& directions, int owned) const;
+
+  /// Global row of every particle, owned and halo: consecutive on each rank, in the order of the ranks.
+  std::span<const PetscInt> rows() const { return rows_; }
+
+ private:
+  void find_halo_targets();
+  void sort_along_cells(Particles<Dim>& particles) const;
+
+  MPI_Comm comm_;
+  CellGrid<Dim> cells_;
+  CellGrid<Dim> fine_;
+  Partitioner partitioner_;
+  std::vector<int> owner_;                // rank of each cell
+  std::vector<int> target_start_;         // per cell: range in targets_
+  std::vector<HaloTarget<Dim>> targets_;  // who sees the particles of a cell of this rank
+  double achieved_imbalance_ = 1.0;
+  int partitions_ = 0;
+  Halo halo_;
+  std::vector<Image<Dim>> halo_image_;  // per particle sent
+  std::vector<PetscInt> rows_;
+};
+
+}  // namespace impinge

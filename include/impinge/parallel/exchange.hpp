@@ -1,0 +1,77 @@
+#pragma once
+// Communication patterns. An Exchange moves packed items between ranks; a Halo refreshes copies with it.
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "impinge/core/mpi.hpp"
+#include "impinge/core/petsc.hpp"
+
+namespace impinge {
+
+/// A one-way pattern: each rank sends a run of items to some ranks (itself included) and receives runs from others,
+/// ordered by the sender's rank.
+class Exchange {
+ public:
+  /// Nobody sends anything.
+  Exchange() = default;
+
+  /// `runs`: (destination rank, number of items) in the order in which the items stand in the send buffer.
+  /// Collective.
+  Exchange(MPI_Comm comm, std::span<const std::pair<int, int>> runs);
+
+  int n_send() const { return n_send_; }
+  int n_receive() const { return n_receive_; }
+
+  /// Copies send[0, n_send) of every rank to receive[0, n_receive). T is copied bytewise. Collective.
+  template <class T>
+  void forward(const T* send, T* receive) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    forward_bytes(send, receive, static_cast<int>(sizeof(T)));
+  }
+
+  /// The two halves of forward, for work in between that touches neither array. Collective.
+  void begin_forward(const double* send, double* receive) const;
+  void end_forward(const double* send, double* receive) const;
+
+ private:
+  void forward_bytes(const void* send, void* receive, int item_bytes) const;
+
+  PetscForest forest_;
+  int n_send_ = 0;
+  int n_receive_ = 0;
+};
+
+/// Refreshes the copies of other ranks' particles (and periodic images) that stand behind the owned ones.
+class Halo {
+ public:
+  Halo() = default;
+
+  /// `index`: owned particles to send, in the order of the exchange's runs.
+  Halo(Exchange exchange, std::vector<int> index) : exchange_(std::move(exchange)), index_(std::move(index)) {}
+
+  const Exchange& exchange() const { return exchange_; }
+  std::span<const int> index() const { return index_; }
+
+  /// Copies what refresh sends of a field of owned particles. Not collective.
+  template <class T>
+  void pack(const T* field, std::vector<T>& packed) const {
+    for (std::size_t k = 0; k < index_.size(); ++k) packed[k] = field[index_[k]];
+  }
+
+  /// Copies field[owned] of the senders to field[owned, owned + n_receive). Collective.
+  template <class T>
+  void refresh(std::vector<T>& field, int owned) const {
+    std::vector<T> packed(index_.size());
+    pack(field.data(), packed);
+    exchange_.forward(packed.data(), field.data() + owned);
+  }
+
+ private:
+  Exchange exchange_;
+  std::vector<int> index_;
+};
+
+}  // namespace impinge

@@ -1,0 +1,35 @@
+#pragma once
+// Graph partitioning libraries.
+
+#include <mpi.h>
+
+#include <vector>
+
+namespace impinge {
+
+enum class Partitioner { metis, ptscotch };
+
+struct ParallelSettings {
+  Partitioner partitioner = Partitioner::metis;
+  double imbalance = 1.1;  ///< repartition when max/mean of the owned particles passes it
+};
+
+/// A weighted undirected graph in compressed rows, the same on every rank that knows its edges.
+struct CellGraph {
+  std::vector<int> start{0};
+  std::vector<int> neighbour;
+  std::vector<int> vertex_weight;
+  std::vector<int> edge_weight;
+
+  int size() const { return static_cast<int>(vertex_weight.size()); }
+};
+
+/// True on the ranks that must know the edges of the graph; the vertices' weights must be known to all. Not collective.
+bool needs_edges(MPI_Comm comm, Partitioner partitioner);
+
+/// Part of every vertex, 0 to `parts` - 1, with balanced vertex weights and a small cut; parts beyond the number of
+/// vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc): its parts differ
+/// from call to call, those of METIS do not. Collective.
+std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner);
+
+}  // namespace impinge

@@ -1,0 +1,99 @@
+#pragma once
+// One search per step that feeds every operator.
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "impinge/core/buffer.hpp"
+#include "impinge/particles/cell_grid.hpp"
+#include "impinge/particles/kernel.hpp"
+#include "impinge/particles/particles.hpp"
+
+namespace impinge {
+
+/// The pairs of one particle: local indices of the neighbours (owned or halo) and the kernel's weights W(r_ij) [-].
+struct PairRow {
+  std::span<const int> index;
+  std::span<const double> weight;
+};
+
+/// Pairs in compressed rows, one row per owned particle. The arrays may be longer than start.back(); what is beyond has
+/// no value.
+struct PairList {
+  std::vector<int> start{0};
+  Buffer<int> index;
+  Buffer<double> weight;
+
+  int begin(int i) const { return start[static_cast<std::size_t>(i)]; }
+  int end(int i) const { return start[static_cast<std::size_t>(i) + 1]; }
+  int rows() const { return static_cast<int>(start.size()) - 1; }
+  std::int64_t pairs() const { return start.back(); }
+  std::size_t bytes() const {
+    return start.capacity() * sizeof(int) + static_cast<std::size_t>(pairs()) * (sizeof(int) + sizeof(double));
+  }
+};
+
+/// Finds all pairs within two radii: the near ones as a list, the far ones row by row as they are asked for, since
+/// there are too many to keep. A row's order is that of the cells and, within a cell, of the ids, so sums over a row
+/// are bitwise the same for every decomposition; columns of owned particles ascend.
+template <int Dim>
+class NeighbourSearch {
+ public:
+  /// Radii in metres, near_radius <= far_radius; `cells`: the cells along which the particles are sorted, with
+  /// far_radius <= reach cells. `mirrored`: walls are mirrors; a wall particle then measures only: it has a near row
+  /// and stands in no other row.
+  NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius, double far_radius,
+                  bool mirrored = false);
+
+  /// Reads positions and types of owned particles (sorted) and halo. Inlet particles and ghosts get empty rows. Not
+  /// collective.
+  void search(const Particles<Dim>& particles);
+
+  const PairList& near() const { return near_; }
+
+  /// Calls use(i, row) for every owned particle in their order, with its pairs within the far radius at the last search
+  /// and the particle itself in its place, with weight 0. Rows of inlet particles, ghosts, and walls on mirrors are
+  /// empty. A row is valid during the call. Not collective.
+  template <class Use>
+  void for_far_rows(Use&& use) {
+    for (int i = 0; i < near_.rows(); ++i) use(i, far_row(i));
+  }
+
+  /// Where an owned particle, no wall particle on a mirror, stood at the last search [m].
+  Vector<Dim> searched_position(int i) const;
+
+  /// Memory that the list and the search hold [bytes].
+  std::size_t bytes() const;
+
+ private:
+  void arrange(const Particles<Dim>& particles);
+  void find_near(const Particles<Dim>& particles);
+  PairRow far_row(int i);
+  std::size_t append_within(double radius, double above, int i, const Vector<Dim>& centre, std::size_t used);
+  void weigh(double radius, std::size_t count, double* weight) const;
+
+  CellGrid<Dim> cells_;
+  int reach_;
+  KernelType kernel_;
+  double near_radius_;
+  double far_radius_;
+  bool mirrored_;
+  PairList near_;
+  // Particles in the order of the local cells: a box of cells around all of them, padded by the reach.
+  std::array<int, Dim> box_low_;
+  std::array<int, Dim> box_extent_;
+  std::vector<int> box_cell_;  // per particle
+  std::vector<int> cell_start_;
+  std::vector<int> entry_;                               // particle of each place in cell order
+  std::vector<int> place_;                               // inverse of entry_
+  std::array<std::vector<double>, Dim> entry_position_;  // by axis
+  std::vector<ParticleType> type_;                       // of the owned particles
+  // Of one row.
+  std::array<std::vector<double>, Dim> gap2_;  // squares of the distances to layers of cells, by axis
+  Buffer<int> index_;
+  Buffer<double> square_;  // of the distances
+  Buffer<double> weight_;
+};
+
+}  // namespace impinge

@@ -1,0 +1,247 @@
+#include "impinge/method/operators.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace impinge {
+namespace {
+
+// Calls use(j, W_ij) for the pairs of particle i.
+template <class Use>
+void for_pairs(const PairList& list, int i, Use&& use) {
+  for (int k = list.begin(i); k < list.end(i); ++k)
+    use(static_cast<std::size_t>(list.index[static_cast<std::size_t>(k)]), list.weight[static_cast<std::size_t>(k)]);
+}
+
+constexpr double least_determinant = 0.15;
+
+template <int Dim>
+Matrix<Dim> inverse_or(const Matrix<Dim>& moment, const Matrix<Dim>& other) {
+  const double size = determinant(moment);
+  return size < least_determinant ? other : 1.0 / size * adjugate(moment);
+}
+
+// Of a pair's force: along the pair, but along the normal of a wall, which is smooth.
+template <int Dim>
+Vector<Dim> push_direction(const Vector<Dim>& offset, ParticleType type, const Vector<Dim>& wall_normal) {
+  return type == ParticleType::wall ? dot(offset, wall_normal) * wall_normal : offset;
+}
+
+}  // namespace
+
+void number_density(const PairList& near, std::span<double> density) {
+  for (int i = 0; i < near.rows(); ++i) {
+    double sum = 0.0;
+    for_pairs(near, i, [&](std::size_t, double weight) { sum += weight; });
+    density[static_cast<std::size_t>(i)] = sum;
+  }
+}
+
+double packing(const PairList& near, KernelType kernel, int i) {
+  return with_kernel(kernel, [&]<class Kernel>(Kernel) {
+    double sum = 0.0;
+    for_pairs(near, i, [&](std::size_t, double weight) { sum += packing_weight<Kernel>(weight); });
+    return sum;
+  });
+}
+
+template <int Dim>
+Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  Vector<Dim> sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = centre - position[j];
+    sum += weight / norm(offset) * offset;
+  });
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  Matrix<Dim> moment;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = position[j] - centre;
+    moment.add_product(Dim / n0 * weight / dot(offset, offset) * offset, offset);
+  });
+  return inverse_or(moment, Matrix<Dim>::identity());
+}
+
+template <int Dim>
+double divergence(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                  double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vector<Dim> centre = position[self];
+  const Vector<Dim> own = velocity[self];
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = position[j] - centre;
+    sum += dot(velocity[j] - own, offset) * weight / dot(offset, offset);
+  });
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+double corrected_divergence(const PairList& near, std::span<const Vector<Dim>> position,
+                            std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
+                            const Matrix<Dim>& correction, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vector<Dim> centre = position[self];
+  const Vector<Dim> own = velocity[self];
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = position[j] - centre;
+    Vector<Dim> relative = velocity[j] - own;
+    const Vector<Dim> normal = wall_normal[self] + wall_normal[j];
+    const double square = dot(normal, normal);
+    if (square > 0.0) relative = dot(relative, normal) / square * normal;
+    sum += dot(relative, correction * offset) * weight / dot(offset, offset);
+  });
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                               std::span<const double> pressure, double base, const Matrix<Dim>& correction, double n0,
+                               int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  Vector<Dim> sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = position[j] - centre;
+    sum += (pressure[j] - base) * weight / dot(offset, offset) * offset;
+  });
+  return Dim / n0 * (correction * sum);
+}
+
+template <int Dim>
+Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> position, std::span<const ParticleType> type,
+                      double distance, double spacing, int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  Vector<Dim> push;
+  for_pairs(near, i, [&](std::size_t j, double) {
+    if (type[j] != ParticleType::fluid) return;
+    const Vector<Dim> offset = centre - position[j];
+    const double r = norm(offset);
+    const double overlap = distance - r / spacing;
+    if (overlap > 0.0 && r > 0.0) push += overlap / r * offset;
+  });
+  return push;
+}
+
+template <int Dim>
+Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<Dim>> position,
+                                  std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                                  const Vector<Dim>& displacement, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vector<Dim> centre = position[self];
+  const Vector<Dim> own = velocity[self];
+  Matrix<Dim> moment;
+  Matrix<Dim> slope;
+  Vector<Dim> least, most;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
+    const Vector<Dim> offset = position[j] - centre;
+    const Vector<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
+    const Vector<Dim> relative = velocity[j] - own;
+    moment.add_product(weighted, offset);
+    slope.add_product(relative, weighted);
+    for (int k = 0; k < Dim; ++k) {
+      least[k] = std::min(least[k], relative[k]);
+      most[k] = std::max(most[k], relative[k]);
+    }
+  });
+  Vector<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
+  for (int k = 0; k < Dim; ++k) change[k] = std::clamp(change[k], least[k], most[k]);
+  return change;
+}
+
+double least_pressure(const PairList& near, std::span<const double> pressure, int i) {
+  double least = pressure[static_cast<std::size_t>(i)];
+  for_pairs(near, i, [&](std::size_t j, double) { least = std::min(least, pressure[j]); });
+  return least;
+}
+
+double weighted_mean(const PairList& near, std::span<const double> value, int i) {
+  double weights = 0.0;
+  double sum = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    weights += weight;
+    sum += weight * value[j];
+  });
+  return weights > 0.0 ? sum / weights : 0.0;
+}
+
+template <int Dim>
+Vector<Dim> pressure_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                              std::span<const double> pressure, std::span<const ParticleType> type,
+                              std::span<const Vector<Dim>> wall_normal, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vector<Dim> centre = position[self];
+  const double own = pressure[self];
+  Vector<Dim> sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (type[j] == ParticleType::ghost) return;
+    const Vector<Dim> offset = position[j] - centre;
+    sum += (pressure[j] + own) * weight / dot(offset, offset) * push_direction<Dim>(offset, type[j], wall_normal[j]);
+  });
+  return Dim / n0 * sum;
+}
+
+template <int Dim>
+Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> velocity, double factor, int i) {
+  const Vector<Dim> own = velocity[static_cast<std::size_t>(i)];
+  Vector<Dim> sum;
+  for (std::size_t k = 0; k < far.index.size(); ++k)
+    sum += far.weight[k] * (velocity[static_cast<std::size_t>(far.index[k])] - own);
+  return factor * sum;
+}
+
+template <int Dim>
+Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
+                      std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  const Vector<Dim> centre = position[self];
+  const Vector<Dim> own = velocity[self];
+  Vector<Dim> change;
+  for_pairs(near, i, [&](std::size_t j, double) {
+    if (type[j] == ParticleType::ghost) return;
+    const Vector<Dim> offset = position[j] - centre;
+    const Vector<Dim> relative = own - velocity[j];
+    const Vector<Dim> next = offset - dt * relative;
+    const Vector<Dim> direction = push_direction<Dim>(offset, type[j], wall_normal[j]);
+    const double approach = dot(relative, direction);
+    if (approach <= 0.0 || dot(next, next) >= distance * distance) return;
+    const double share = type[j] == ParticleType::fluid ? 0.5 : 1.0;
+    change -= share * (1.0 + restitution) * approach / dot(direction, direction) * direction;
+  });
+  return change;
+}
+
+#define IMPINGE_INSTANTIATE(Dim)                                                                                       \
+  template Vector<Dim> asymmetry<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);                     \
+  template Matrix<Dim> moment_correction<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);             \
+  template double divergence<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>, double, \
+                                  int);                                                                                \
+  template double corrected_divergence<Dim>(const PairList&, std::span<const Vector<Dim>>,                             \
+                                            std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,                \
+                                            const Matrix<Dim>&, double, int);                                          \
+  template Vector<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>, \
+                                               double, const Matrix<Dim>&, double, int);                               \
+  template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \
+                                      double, double, int);                                                            \
+  template Vector<Dim> velocity_change_along<Dim>(const PairList&, std::span<const Vector<Dim>>,                       \
+                                                  std::span<const Vector<Dim>>, std::span<const ParticleType>,         \
+                                                  const Vector<Dim>&, double, int);                                    \
+  template Vector<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>,  \
+                                              std::span<const ParticleType>, std::span<const Vector<Dim>>, double,     \
+                                              int);                                                                    \
+  template Vector<Dim> velocity_laplacian<Dim>(const PairRow&, std::span<const Vector<Dim>>, double, int);             \
+  template Vector<Dim> collision<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,     \
+                                      std::span<const ParticleType>, std::span<const Vector<Dim>>, double, double,     \
+                                      double, int);
+IMPINGE_INSTANTIATE(2)
+IMPINGE_INSTANTIATE(3)
+#undef IMPINGE_INSTANTIATE
+
+}  // namespace impinge

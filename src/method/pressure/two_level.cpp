@@ -1,0 +1,456 @@
+#include "impinge/method/pressure/two_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace impinge {
+namespace {
+
+constexpr const char* smoother_option = "-ppe_coarse_pc_hypre_boomeramg_relax_type_all";
+constexpr double jacobi_weight = 1.5;
+constexpr double least_node_weight = 0.05;  // a node with less interpolation weight is left out
+constexpr double regularisation = 1e-9;     // of A_c's diagonal: few particles may leave P without full rank
+constexpr int oldest = 10;                  // solves with one coarse matrix
+constexpr double most_growth = 1.3;         // of the iterations
+
+constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+
+/// Calls use(k, offset) for the points of a cube of `size` points along each axis, offsets from `first` on.
+template <int Dim, class Use>
+void for_cube(int size, int first, Use&& use) {
+  for (int k = 0; k < power(size, Dim); ++k) {
+    std::array<int, Dim> offset;
+    int rest = k;
+    for (int& component : offset) {
+      component = rest % size + first;
+      rest /= size;
+    }
+    use(k, offset);
+  }
+}
+
+/// The k of a point of such a cube, from its offset to the first point.
+template <int Dim>
+int place_in_cube(int size, const std::array<int, Dim>& offset) {
+  int k = 0;
+  for (std::size_t axis = Dim; axis-- > 0;) k = k * size + offset[axis];
+  return k;
+}
+
+template <int Dim>
+std::array<int, Dim> sum(std::array<int, Dim> a, const std::array<int, Dim>& b) {
+  for (std::size_t k = 0; k < Dim; ++k) a[k] += b[k];
+  return a;
+}
+
+/// Shares of the corners of a cube, first axis fastest, in a value at a place inside it, 0 to 1 along each axis.
+template <int Dim>
+std::array<double, 1 << Dim> corner_shares(double value, const Vector<Dim>& inside) {
+  std::array<double, 1 << Dim> weight;
+  weight[0] = value;
+  std::size_t known = 1;
+  for (int k = 0; k < Dim; ++k) {
+    for (std::size_t c = 0; c < known; ++c) {
+      weight[known + c] = inside[k] * weight[c];
+      weight[c] -= weight[known + c];
+    }
+    known *= 2;
+  }
+  return weight;
+}
+
+}  // namespace
+
+template <int Dim>
+TwoLevelPreconditioner<Dim>::TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells)
+    : comm_(comm), cells_(cells) {
+  create_coarse_solver();
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
+  petsc_check(KSPCreate(comm_, coarse_solver_.address()));
+  petsc_check(KSPSetOptionsPrefix(coarse_solver_, "ppe_coarse_"));
+  petsc_check(KSPSetType(coarse_solver_, KSPPREONLY));
+  PC preconditioner;
+  petsc_check(KSPGetPC(coarse_solver_, &preconditioner));
+  petsc_check(PCSetType(preconditioner, PCHYPRE));
+  // BoomerAMG's own smoother, Jacobi between ranks, is indefinite where few particles tie nodes of two ranks together.
+  PetscBool given = PETSC_FALSE;
+  petsc_check(PetscOptionsHasName(nullptr, nullptr, smoother_option, &given));
+  if (!given) petsc_check(PetscOptionsSetValue(nullptr, smoother_option, "l1scaled-SOR/Jacobi"));
+  petsc_check(KSPSetFromOptions(coarse_solver_));
+  if (!given) petsc_check(PetscOptionsClearValue(nullptr, smoother_option));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
+  // Root of a cell: its place among the cells of its rank.
+  std::vector<int> count(static_cast<std::size_t>(ranks_of(comm_)), 0);
+  std::vector<PetscInt> root(owner.size());
+  for (std::size_t cell = 0; cell < owner.size(); ++cell) root[cell] = count[static_cast<std::size_t>(owner[cell])]++;
+  const int self = rank_of(comm_);
+  owned_cells_ = static_cast<std::size_t>(count[static_cast<std::size_t>(self)]);
+
+  node_of_cell_.assign(owner.size(), -1);
+  cell_of_node_.clear();
+  std::vector<PetscSFNode> remote;
+  for (std::size_t cell = 0; cell < owner.size(); ++cell) {
+    if (owner[cell] != self) continue;
+    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Image<Dim>&) {
+      if (node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
+      node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
+      cell_of_node_.push_back(near);
+      remote.push_back({owner[static_cast<std::size_t>(near)], root[static_cast<std::size_t>(near)]});
+    });
+  }
+  petsc_check(PetscSFCreate(comm_, nodes_.address()));
+  petsc_check(PetscSFSetGraph(nodes_, static_cast<PetscInt>(owned_cells_), static_cast<PetscInt>(remote.size()),
+                              nullptr, PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
+  petsc_check(PetscSFSetUp(nodes_));
+  node_of_root_.clear();
+  for (std::size_t cell = 0; cell < owner.size(); ++cell)
+    if (owner[cell] == self) node_of_root_.push_back(node_of_cell_[cell]);
+  root_value_.assign(owned_cells_, 0.0);
+  leaf_value_.assign(cell_of_node_.size() + 1, 0.0);
+  number_.assign(cell_of_node_.size(), -1);
+  stale_ = true;
+}
+
+template <int Dim>
+int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordinates) const {
+  Image<Dim> image;
+  const int cell = cells_.wrapped_cell(coordinates, image);
+  return cell < 0 ? -1 : node_of_cell_[static_cast<std::size_t>(cell)];
+}
+
+template <int Dim>
+std::array<int, Dim> TwoLevelPreconditioner<Dim>::place(const Vector<Dim>& position, Vector<Dim>& inside) const {
+  std::array<int, Dim> base;
+  const Vector<Dim> in_edges = cells_.in_edges(cells_.unmirrored(position));
+  for (int k = 0; k < Dim; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    double at = in_edges[k] - 0.5;
+    if (cells_.edges()[axis].low != Edge::periodic) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
+    base[axis] = static_cast<int>(std::floor(at));
+    inside[k] = at - base[axis];
+  }
+  return base;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::find_interpolation(std::span<const PressureRole> role,
+                                                     std::span<const Vector<Dim>> position) {
+  patches_.clear();
+  inside_.resize(diagonal_.size());
+  for (std::size_t i = 0; i < inside_.size(); ++i) {
+    if (role[i] != PressureRole::unknown) continue;
+    const std::array<int, Dim> base = place(position[i], inside_[i]);
+    if (!patches_.empty() && patches_.back().last == i && patches_.back().base == base) {
+      patches_.back().last = i + 1;
+      continue;
+    }
+    Patch patch{i, i + 1, base, {}};
+    for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+      const int node = local_node(sum<Dim>(base, corner));
+      patch.node[static_cast<std::size_t>(c)] = node < 0 ? cell_of_node_.size() : static_cast<std::size_t>(node);
+    });
+    patches_.push_back(patch);
+  }
+}
+
+// The row of P.
+template <int Dim>
+typename TwoLevelPreconditioner<Dim>::Corners TwoLevelPreconditioner<Dim>::interpolation(std::size_t i) const {
+  return corner_shares(coupling_[i], inside_[i]);
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::sum_at_roots() {
+  std::fill(root_value_.begin(), root_value_.end(), 0.0);
+  petsc_check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  petsc_check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+}
+
+// The cells with enough particles.
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::find_coarse_rows() {
+  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  for (const Patch& patch : patches_) {
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += weight[c];
+    }
+  }
+  sum_at_roots();
+  root_.clear();
+  for (std::size_t k = 0; k < owned_cells_; ++k)
+    if (root_value_[k] >= least_node_weight) root_.push_back(k);
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::number_nodes() {
+  PetscInt next = 0;
+  const auto n_own = static_cast<PetscInt>(root_.size());
+  MPI_Exscan(&n_own, &next, 1, MPIU_INT, MPI_SUM, comm_);
+  std::vector<PetscInt> root_number(owned_cells_, -1);
+  for (const std::size_t k : root_) root_number[k] = next++;
+  petsc_check(PetscSFBcastBegin(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastEnd(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
+                                                      std::span<const Vector<Dim>> position, const Halo& halo) {
+  // A = B + B^T, with half the entries in B: the upper triangle and half of the diagonal and of other ranks' columns.
+  // Row by row: (B P)_i on the 3^Dim cubes of nodes around the neighbours of i, then on the 4^Dim nodes themselves;
+  // patch by patch P^T (B P) on the same nodes; then on the 5^Dim around each node.
+  constexpr std::size_t n_cubes = power(3, Dim);
+  constexpr std::size_t near_size = power(4, Dim);
+  constexpr std::size_t stencil_size = power(5, Dim);
+  std::array<std::array<std::size_t, corners>, n_cubes> node_of_cube;
+  std::array<std::size_t, corners> corner_in_stencil;
+  for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+    const auto to = static_cast<std::size_t>(c);
+    corner_in_stencil[to] = static_cast<std::size_t>(place_in_cube<Dim>(5, corner));
+    for_cube<Dim>(3, 0, [&](int cube, const std::array<int, Dim>& offset) {
+      node_of_cube[static_cast<std::size_t>(cube)][to] =
+          static_cast<std::size_t>(place_in_cube<Dim>(4, sum<Dim>(offset, corner)));
+    });
+  });
+  std::array<std::size_t, near_size> near_in_stencil;
+  for_cube<Dim>(4, 1, [&](int q, const std::array<int, Dim>& offset) {
+    near_in_stencil[static_cast<std::size_t>(q)] = static_cast<std::size_t>(place_in_cube<Dim>(5, offset));
+  });
+
+  std::vector<double> coupling(matrix.coupling);
+  coupling.resize(position.size());
+  halo.refresh(coupling, static_cast<int>(coupling_.size()));
+  std::vector<std::array<int, Dim>> base(position.size());
+  std::vector<Corners> weight(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (role[i] != PressureRole::unknown) continue;
+    Vector<Dim> inside;
+    base[i] = place(position[i], inside);
+    weight[i] = corner_shares(coupling[i], inside);
+  }
+
+  std::vector<double> stencil((cell_of_node_.size() + 1) * stencil_size, 0.0);
+  std::array<Corners, n_cubes> cubes;
+  std::array<double, near_size> row;
+  std::array<std::array<double, near_size>, corners> product;
+  for (const Patch& patch : patches_) {
+    for (auto& line : product) line.fill(0.0);
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      for (Corners& cube : cubes) cube.fill(0.0);
+      const auto add = [&](std::size_t j, double entry) {
+        std::array<int, Dim> offset;
+        for (std::size_t k = 0; k < Dim; ++k) {
+          offset[k] = base[j][k] - patch.base[k] + 1;
+          if (cells_.edges()[k].low != Edge::periodic) continue;
+          if (offset[k] > 2) offset[k] -= cells_.extent()[k];
+          if (offset[k] < 0) offset[k] += cells_.extent()[k];
+        }
+        Corners& cube = cubes[static_cast<std::size_t>(place_in_cube<Dim>(3, offset))];
+        for (std::size_t c = 0; c < corners; ++c) cube[c] += entry * weight[j][c];
+      };
+      add(i, 0.5 * matrix.diagonal[i]);
+      for (auto k = static_cast<std::size_t>(matrix.own.start[i]) + 1;
+           k < static_cast<std::size_t>(matrix.own.start[i + 1]); ++k)
+        add(static_cast<std::size_t>(matrix.own.column[k]), matrix.own.value[k]);
+      for (auto k = static_cast<std::size_t>(matrix.others.start[i]);
+           k < static_cast<std::size_t>(matrix.others.start[i + 1]); ++k)
+        add(coupling_.size() + static_cast<std::size_t>(matrix.others.column[k]), 0.5 * matrix.others.value[k]);
+      row.fill(0.0);
+      for (std::size_t cube = 0; cube < n_cubes; ++cube)
+        for (std::size_t c = 0; c < corners; ++c) row[node_of_cube[cube][c]] += cubes[cube][c];
+      for (std::size_t c = 0; c < corners; ++c)
+        for (std::size_t q = 0; q < near_size; ++q) product[c][q] += weight[i][c] * row[q];
+    }
+    for (std::size_t c = 0; c < corners; ++c) {
+      double* entries = &stencil[patch.node[c] * stencil_size];
+      for (std::size_t q = 0; q < near_size; ++q) entries[near_in_stencil[q] - corner_in_stencil[c]] += product[c][q];
+    }
+  }
+
+  // Sums at the roots, in an order that does not change from run to run, and back to all that need the transpose.
+  std::vector<double> sums(owned_cells_ * stencil_size, 0.0);
+  MPI_Datatype whole_stencil;
+  MPI_Type_contiguous(stencil_size, MPI_DOUBLE, &whole_stencil);
+  MPI_Type_commit(&whole_stencil);
+  petsc_check(PetscSFReduceBegin(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  petsc_check(PetscSFReduceEnd(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  petsc_check(PetscSFBcastBegin(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastEnd(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
+  MPI_Type_free(&whole_stencil);
+
+  create_coarse_matrix();
+  std::vector<PetscInt> columns;
+  std::vector<double> values;
+  for (const std::size_t root : root_) {
+    const auto node = static_cast<std::size_t>(node_of_root_[root]);
+    const auto centre = cells_.coordinates(cell_of_node_[node]);
+    columns.clear();
+    values.clear();
+    for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
+      Image<Dim> image;
+      const int cell = cells_.wrapped_cell(sum<Dim>(centre, offset), image);
+      if (cell < 0 || image.reflects() || node_of_cell_[static_cast<std::size_t>(cell)] < 0) return;
+      const auto other = static_cast<std::size_t>(node_of_cell_[static_cast<std::size_t>(cell)]);
+      const auto there = static_cast<std::size_t>(k);
+      const double value =
+          stencil[node * stencil_size + there] + stencil[other * stencil_size + stencil_size - 1 - there];
+      if (value == 0.0 || number_[other] < 0) return;
+      columns.push_back(number_[other]);
+      values.push_back(there == stencil_size / 2 ? (1.0 + regularisation) * value : value);
+    });
+    petsc_check(MatSetValues(coarse_matrix_, 1, &number_[node], static_cast<PetscInt>(columns.size()), columns.data(),
+                             values.data(), ADD_VALUES));
+  }
+  finish_coarse_matrix();
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::create_coarse_matrix() {
+  const auto n_own = static_cast<PetscInt>(root_.size());
+  petsc_check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, power(5, Dim), nullptr, power(5, Dim),
+                           nullptr, coarse_matrix_.address()));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::finish_coarse_matrix() {
+  petsc_check(MatAssemblyBegin(coarse_matrix_, MAT_FINAL_ASSEMBLY));
+  petsc_check(MatAssemblyEnd(coarse_matrix_, MAT_FINAL_ASSEMBLY));
+  petsc_check(MatSetOption(coarse_matrix_, MAT_SPD, PETSC_TRUE));
+  petsc_check(MatCreateVecs(coarse_matrix_, coarse_solution_.address(), coarse_residual_.address()));
+  create_coarse_solver();
+  petsc_check(KSPSetOperators(coarse_solver_, coarse_matrix_, coarse_matrix_));
+  petsc_check(KSPSetUp(coarse_solver_));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<const PressureRole> role,
+                                         std::span<const Vector<Dim>> position, const Halo& halo, int iterations) {
+  diagonal_ = matrix.diagonal;
+  coupling_ = matrix.coupling;
+  find_interpolation(role, position);
+  if (age_ == 1) fresh_iterations_ = iterations;
+  if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
+    find_coarse_rows();
+    number_nodes();
+    build_coarse_matrix(matrix, role, position, halo);
+    stale_ = false;
+    age_ = 0;
+    ++builds_;
+  }
+  ++age_;
+}
+
+template <int Dim>
+CoarseRows TwoLevelPreconditioner<Dim>::coarse_rows() const {
+  CoarseRows rows;
+  if (age() == 0) return rows;
+  rows.cell.assign(root_.begin(), root_.end());
+  PetscInt first = 0, end = 0;
+  petsc_check(MatGetOwnershipRange(coarse_matrix_, &first, &end));
+  for (PetscInt row = first; row < end; ++row) {
+    PetscInt length = 0;
+    const PetscInt* columns = nullptr;
+    const double* values = nullptr;
+    petsc_check(MatGetRow(coarse_matrix_, row, &length, &columns, &values));
+    rows.length.push_back(length);
+    rows.column.insert(rows.column.end(), columns, columns + length);
+    rows.value.insert(rows.value.end(), values, values + length);
+    petsc_check(MatRestoreRow(coarse_matrix_, row, &length, &columns, &values));
+  }
+  return rows;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations) {
+  root_.assign(rows.cell.begin(), rows.cell.end());
+  number_nodes();
+  create_coarse_matrix();
+  PetscInt row = 0;
+  petsc_check(MatGetOwnershipRange(coarse_matrix_, &row, nullptr));
+  const std::vector<PetscInt> columns(rows.column.begin(), rows.column.end());
+  std::size_t entry = 0;
+  for (const std::int64_t length : rows.length) {
+    petsc_check(MatSetValues(coarse_matrix_, 1, &row, static_cast<PetscInt>(length), &columns[entry],
+                             &rows.value[entry], INSERT_VALUES));
+    entry += static_cast<std::size_t>(length);
+    ++row;
+  }
+  finish_coarse_matrix();
+  stale_ = false;
+  age_ = age;
+  fresh_iterations_ = fresh_iterations;
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::attach(PC preconditioner) {
+  petsc_check(PCShellSetContext(preconditioner, this));
+  petsc_check(PCShellSetApply(preconditioner, [](PC shell, ::Vec residual, ::Vec result) -> PetscErrorCode {
+    void* self = nullptr;
+    PetscCall(PCShellGetContext(shell, &self));
+    return code_of([&] { static_cast<TwoLevelPreconditioner*>(self)->apply(residual, result); });
+  }));
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
+  const double* r = nullptr;
+  double* z = nullptr;
+  petsc_check(VecGetArrayRead(residual, &r));
+  petsc_check(VecGetArray(result, &z));
+  const std::size_t owned = diagonal_.size();
+  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  for (const Patch& patch : patches_) {
+    Corners sum{};
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) sum[c] += weight[c] * r[i];
+    }
+    for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += sum[c];
+  }
+  sum_at_roots();
+
+  double* coarse = nullptr;
+  petsc_check(VecGetArray(coarse_residual_, &coarse));
+  for (std::size_t k = 0; k < root_.size(); ++k) coarse[k] = root_value_[root_[k]];
+  petsc_check(VecRestoreArray(coarse_residual_, &coarse));
+  petsc_check(KSPSolve(coarse_solver_, coarse_residual_, coarse_solution_));
+  std::fill(root_value_.begin(), root_value_.end(), 0.0);
+  petsc_check(VecGetArray(coarse_solution_, &coarse));
+  for (std::size_t k = 0; k < root_.size(); ++k) root_value_[root_[k]] = coarse[k];
+  petsc_check(VecRestoreArray(coarse_solution_, &coarse));
+
+  petsc_check(PetscSFBcastBegin(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastEnd(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  leaf_value_.back() = 0.0;
+  for (std::size_t i = 0; i < owned; ++i) z[i] = jacobi_weight * r[i] / diagonal_[i];
+  for (const Patch& patch : patches_) {
+    Corners value;
+    for (std::size_t c = 0; c < corners; ++c) value[c] = leaf_value_[patch.node[c]];
+    for (std::size_t i = patch.first; i < patch.last; ++i) {
+      const Corners weight = interpolation(i);
+      for (std::size_t c = 0; c < corners; ++c) z[i] += weight[c] * value[c];
+    }
+  }
+  petsc_check(VecRestoreArray(result, &z));
+  petsc_check(VecRestoreArrayRead(residual, &r));
+}
+
+template <int Dim>
+std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
+  return inside_.capacity() * sizeof(Vector<Dim>) + patches_.capacity() * sizeof(Patch) +
+         (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
+         (node_of_cell_.capacity() + cell_of_node_.capacity() + node_of_root_.capacity()) * sizeof(int) +
+         number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
+}
+
+template class TwoLevelPreconditioner<2>;
+template class TwoLevelPreconditioner<3>;
+
+}  // namespace impinge

@@ -1,0 +1,93 @@
+#include "impinge/method/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace impinge {
+namespace {
+
+constexpr double table_step = 0.02;  // [dp]
+constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
+
+// Over the lattice points beyond a flat surface that a particle at a depth misses, sum W (1 + d_g/depth). Lengths in
+// dp.
+template <int Dim>
+double missing_weight(KernelType type, double effective_radius, double depth) {
+  const int reach = static_cast<int>(std::ceil(effective_radius));
+  double sum = 0.0;
+  for (int x = -reach; x <= reach; ++x) {
+    for (int z = Dim == 2 ? 0 : -reach; z <= (Dim == 2 ? 0 : reach); ++z) {
+      for (double beyond = 0.5; depth + beyond < effective_radius; beyond += 1.0) {
+        const double r = std::hypot(x, z, depth + beyond);
+        sum += (1.0 + beyond / depth) *
+               with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int Dim>
+SurfaceClosure<Dim>::SurfaceClosure(KernelType type, double effective_radius) {
+  for (double depth = least_depth; depth < effective_radius + table_step; depth += table_step)
+    weight_.push_back(missing_weight<Dim>(type, effective_radius, depth));
+}
+
+template <int Dim>
+double SurfaceClosure<Dim>::weight(double depth) const {
+  const double place = (std::max(depth, least_depth) - least_depth) / table_step;
+  if (!(place < static_cast<double>(weight_.size() - 1))) return 0.0;
+  const auto below = static_cast<std::size_t>(place);
+  const double upper = place - static_cast<double>(below);
+  return (1.0 - upper) * weight_[below] + upper * weight_[below + 1];
+}
+
+template <int Dim>
+double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> asymmetry,
+                     std::span<const std::uint8_t> free_surface, double spacing, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
+  double weights = 0.0;
+  double depths = 0.0;
+  for (const int neighbour : far.index) {
+    const auto j = static_cast<std::size_t>(neighbour);
+    if (!free_surface[j]) continue;
+    const double size = norm(asymmetry[j]);
+    const Vector<Dim> offset = 1.0 / spacing * (position[j] - position[self]);
+    const double square = dot(offset, offset);
+    if (size == 0.0 || square == 0.0) continue;
+    const double weight = 1.0 / (square * square * square);
+    weights += weight;
+    depths += weight * (dot(offset, asymmetry[j]) / size + SurfaceClosure<Dim>::least_depth);
+  }
+  if (weights == 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(depths / weights, SurfaceClosure<Dim>::least_depth);
+}
+
+template <int Dim>
+Vector<Dim> surface_normal(const PairList& near, std::span<const Vector<Dim>> asymmetry,
+                           std::span<const std::uint8_t> free_surface, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  Vector<Dim> sum;
+  if (free_surface[self]) sum += own_weight * asymmetry[self];
+  for (int k = near.begin(i); k < near.end(i); ++k) {
+    const auto j = static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]);
+    if (free_surface[j]) sum += near.weight[static_cast<std::size_t>(k)] * asymmetry[j];
+  }
+  const double size = norm(sum);
+  return size > 0.0 ? 1.0 / size * sum : sum;
+}
+
+template class SurfaceClosure<2>;
+template class SurfaceClosure<3>;
+template double surface_depth<2>(const PairRow&, std::span<const Vector<2>>, std::span<const Vector<2>>,
+                                 std::span<const std::uint8_t>, double, int);
+template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
+template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
+template double surface_depth<3>(const PairRow&, std::span<const Vector<3>>, std::span<const Vector<3>>,
+                                 std::span<const std::uint8_t>, double, int);
+
+}  // namespace impinge

@@ -1,0 +1,348 @@
+#include "impinge/programs/run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <set>
+#include <sstream>
+
+#include "impinge/io/output.hpp"
+#include "impinge/io/snapshot.hpp"
+#include "impinge/method/simulation.hpp"
+#include "impinge/parallel/exchange.hpp"
+#include "impinge/programs/plan.hpp"
+#include "impinge/programs/progress.hpp"
+#include "impinge/programs/stop_signals.hpp"
+
+namespace impinge {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Runs use(std::integral_constant<int, Dim>) for the case's dimension.
+template <class Use>
+auto with_dimension(const Case& config, Use&& use) {
+  if (config.dimension == 3) return use(std::integral_constant<int, 3>{});
+  return use(std::integral_constant<int, 2>{});
+}
+
+/// Throws InputError on all ranks if the command line has PETSc options that no rank has asked for (a solver may live
+/// on some ranks only); `ours`: set by the program. Collective.
+void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) {
+  const std::vector<std::string> unused_here = unused_petsc_options();
+  const auto used_here = [&](const std::string& option) {
+    return std::ranges::find(unused_here, option) == unused_here.end();
+  };
+  std::vector<std::string> mistakes;
+  std::istringstream unused(broadcast(comm, fmt::format("{}", fmt::join(unused_here, "\n")), 0));
+  for (std::string option; std::getline(unused, option);)
+    if (!any_rank(comm, used_here(option)) && std::ranges::find(ours, option) == ours.end())
+      mistakes.push_back(fmt::format("command line: {}: no part of PETSc or Impinge uses this option", option));
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+}
+
+template <int Dim>
+void check(MPI_Comm comm, const Case& config) {
+  const Simulation<Dim> simulation(comm, config);
+  refuse_unused_options(comm, simulation.pressure_solver().default_options());
+  const StepReport& report = simulation.report();
+  std::array<std::int64_t, 4> counts{};
+  const Particles<Dim>& particles = simulation.particles();
+  for (int i = 0; i < particles.owned; ++i)
+    ++counts[static_cast<std::size_t>(particles.type[static_cast<std::size_t>(i)])];
+  for (std::int64_t& count : counts) count = sum_over_ranks(comm, count);
+  const double bytes = sum_over_ranks(comm, static_cast<double>(simulation.bytes()));
+  const double most = max_over_ranks(comm, static_cast<double>(simulation.bytes()));
+  const double imbalance = simulation.imbalance();
+  if (rank_of(comm) > 0) return;
+  const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
+  fmt::print("case        {}, {} dimensions: all keys are in range\n", config.name, config.dimension);
+  fmt::print("particles   {}: {} fluid, {} inlet, {} wall, {} ghost\n", report.particles, counts[0], counts[1],
+             counts[2], counts[3]);
+  fmt::print("ranks       {}, largest over mean work {:.3f}\n", ranks_of(comm), imbalance);
+  fmt::print(
+      "memory      {:.1f} MB ({:.0f} bytes per particle), {:.1f} MB on the fullest rank; preconditioner and "
+      "libraries come on top\n",
+      bytes / 1e6, bytes / static_cast<double>(report.particles), most / 1e6);
+  fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
+  if (std::isfinite(cfl_dt))
+    fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
+  fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
+             std::ceil(config.time.end / std::min(config.time.dt, cfl_dt)), config.time.end);
+  fmt::print("output      {}\n", config.output.directory);
+}
+
+/// Mean and largest over the ranks of a number that use(rank plan) gives.
+template <class Use>
+std::pair<double, double> mean_and_largest(const Plan& plan, Use&& use) {
+  double sum = 0.0;
+  double largest = 0.0;
+  for (const RankPlan& rank : plan.ranks) {
+    const auto value = static_cast<double>(use(rank));
+    sum += value;
+    largest = std::max(largest, value);
+  }
+  return {sum / static_cast<double>(plan.ranks.size()), largest};
+}
+
+void print_plan(const Case& config, const Plan& plan) {
+  const auto of = [&](auto member, double unit = 1.0) {
+    return mean_and_largest(plan, [&](const RankPlan& rank) { return static_cast<double>(rank.*member) / unit; });
+  };
+  const auto [work, most_work] = of(&RankPlan::work);
+  const auto [owned, most_owned] = of(&RankPlan::owned);
+  const auto [halo, most_halo] = of(&RankPlan::halo);
+  const double worst_fraction =
+      mean_and_largest(plan, [](const RankPlan& rank) {
+        return static_cast<double>(rank.halo) / std::max(1.0, static_cast<double>(rank.owned));
+      }).second;
+  const auto [neighbours, most_neighbours] = of(&RankPlan::neighbours);
+  const auto [field, most_field] = of(&RankPlan::field_bytes, 1e3);
+  const auto [step, most_step] = of(&RankPlan::step_bytes, 1e3);
+  const auto [iteration, most_iteration] = of(&RankPlan::iteration_bytes, 1e3);
+  const auto [memory, most_memory] = of(&RankPlan::memory, 1e6);
+  const auto [nodes, most_nodes] = of(&RankPlan::nodes);
+  const auto ranks = static_cast<double>(plan.ranks.size());
+  fmt::print("case        {}, {} dimensions, planned for {} ranks; numbers are those of a rank\n", config.name,
+             config.dimension, plan.ranks.size());
+  fmt::print("particles   mean {:.1f}, most {:.0f}, {:.0f} in all\n", owned, most_owned, owned * ranks);
+  fmt::print("imbalance   {:.3f} (largest over mean work)\n", work > 0.0 ? most_work / work : 1.0);
+  fmt::print("empty       {} ranks\n", std::ranges::count(plan.ranks, 0, &RankPlan::owned));
+  fmt::print("halo        mean {:.1f}, most {:.0f} particles; over owned: mean {:.4f}, worst {:.4f}\n", halo, most_halo,
+             halo / owned, worst_fraction);
+  fmt::print("neighbours  mean {:.2f}, most {:.0f} ranks\n", neighbours, most_neighbours);
+  fmt::print("refresh     mean {:.1f}, most {:.1f} kB received for one double per halo particle\n", field, most_field);
+  fmt::print("step        mean {:.1f}, most {:.1f} kB received, and up to {:.1f}, {:.1f} kB per solver iteration\n",
+             step, most_step, iteration, most_iteration);
+  fmt::print("memory      mean {:.1f}, most {:.1f} MB; preconditioner and libraries come on top\n", memory,
+             most_memory);
+  fmt::print("nodes       mean {:.1f}, most {:.0f} cells with particles: rows of the coarse matrix\n", nodes,
+             most_nodes);
+  fmt::print("cells       {}, {} of them with particles (the partitioned graph)\n", plan.cells, plan.occupied);
+}
+
+/// Time of the next snapshot, a multiple of the interval after `time`.
+double next_output(double time, double interval) {
+  return interval > 0.0 ? (std::floor(time / interval + 1e-9) + 1.0) * interval : HUGE_VAL;
+}
+
+/// Says after each step whether a checkpoint is due or a signal asks for the end.
+class Interruptions {
+ public:
+  enum Kind { none, checkpoint, stop };
+
+  Interruptions(MPI_Comm comm, const Case& config) : comm_(comm), config_(config.checkpoint) {}
+
+  /// The same on every rank, whichever rank's clock or signal it was. Collective.
+  Kind after_step(std::int64_t step) {
+    Kind kind = none;
+    if (config_.steps > 0 && step % config_.steps == 0) kind = checkpoint;
+    if (config_.minutes > 0.0 && seconds_since(last_) >= 60.0 * config_.minutes) kind = checkpoint;
+    if (StopSignals::received() != 0) kind = stop;
+    kind = static_cast<Kind>(max_over_ranks(comm_, kind));
+    if (kind != none) last_ = Clock::now();
+    return kind;
+  }
+
+  /// The signal that a rank received. Collective.
+  int signal() const { return static_cast<int>(max_over_ranks(comm_, StopSignals::received())); }
+
+ private:
+  StopSignals signals_;
+  MPI_Comm comm_;
+  decltype(Case::checkpoint) config_;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Runs from where the simulation is to the case's end. Returns false where a signal ended the run before. Collective.
+template <int Dim>
+bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output& output) {
+  const bool first = rank_of(comm) == 0;
+  const auto start = Clock::now();
+  const StepReport& report = simulation.report();
+  const std::int64_t first_step = report.step;
+
+  // Steps that end within this of an instant have reached it.
+  const double tolerance = 1e-9 * config.time.end;
+  const auto finished = [&] { return report.time >= config.time.end - tolerance; };
+  double output_time = next_output(report.time + tolerance, config.output.interval);
+  const bool has_checkpoints = config.checkpoint.steps > 0 || config.checkpoint.minutes > 0.0;
+  Interruptions interruptions(comm, config);
+  bool options_checked = false;
+  Progress progress(report.time, config.time.end, first);
+  while (!finished()) {
+    const auto step_start = Clock::now();
+    try {
+      simulation.step();
+    } catch (const SolveError& error) {
+      output.record(report, seconds_since(step_start));
+      const std::string path = output.save(simulation, "failed", error.what());
+      if (first) fmt::print("the last state is in {}\n", path);
+      throw;
+    }
+    output.record(report, seconds_since(step_start));
+    if (!options_checked && (report.pressure.iterations > 0 || finished())) {
+      refuse_unused_options(comm, simulation.pressure_solver().default_options());
+      options_checked = true;
+    }
+    progress.update(report);
+    if (finished()) {
+      output.save(simulation, "finished");
+    } else if (report.time >= output_time - tolerance) {
+      output.save(simulation, "running");
+      output_time = next_output(report.time + tolerance, config.output.interval);
+    }
+    const Interruptions::Kind interruption = interruptions.after_step(report.step);
+    if (finished() ? has_checkpoints : interruption != Interruptions::none) {
+      const std::string path = output.save_checkpoint(simulation);
+      if (interruption == Interruptions::stop && !finished()) {
+        const char* signal = signal_name(interruptions.signal());
+        if (first)
+          fmt::print("{}: stopped after step {}, t = {:.6g} s, with the state in {}\nto go on: impinge --restart {}\n",
+                     signal, report.step, report.time, path, config.output.directory);
+        return false;
+      }
+    }
+  }
+  if (first)
+    fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step - first_step,
+               duration_text(seconds_since(start)), report.in - report.out - report.fluid);
+  return true;
+}
+
+template <int Dim>
+bool start_run(MPI_Comm comm, const Case& config) {
+  const bool first = rank_of(comm) == 0;
+  Output output(comm, config);
+  if (first && output.removed() > 0)
+    fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
+  Simulation<Dim> simulation(comm, config);
+  if (first)
+    fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
+               config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
+  output.save(simulation, "running");
+  return run(comm, config, simulation, output);
+}
+
+template <int Dim>
+std::shared_ptr<Simulation<Dim>> restored(MPI_Comm comm, const Case& config, const std::string& path) {
+  const Checkpoint<Dim> checkpoint = read_checkpoint<Dim>(comm, path);
+  return std::make_shared<Simulation<Dim>>(comm, config, &checkpoint);
+}
+
+template <int Dim>
+bool go_on(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation) {
+  const StepReport& report = simulation.report();
+  Output output(comm, config, report.step);
+  if (rank_of(comm) == 0)
+    fmt::print("impinge {}: {} from step {}, t = {:.6g} s, to t = {} s with {} particles on {} rank(s), output in {}\n",
+               IMPINGE_VERSION, config.name, report.step, report.time, config.time.end, report.particles,
+               ranks_of(comm), config.output.directory);
+  return run(comm, config, simulation, output);
+}
+
+/// The checkpoints in a directory, the last one first. Throws InputError where there are none or they are of several
+/// cases. Collective.
+std::vector<std::string> checkpoints_to_try(MPI_Comm comm, const std::string& directory) {
+  std::vector<std::string> paths;
+  std::string mistake;
+  if (rank_of(comm) == 0) {
+    try {
+      paths = list_checkpoints(directory);
+      std::set<std::string> names;
+      for (const std::string& path : paths) names.insert(name_and_step(path).first);
+      if (paths.empty()) mistake = "no checkpoint there";
+      if (names.size() > 1) mistake = fmt::format("checkpoints of several cases: {}", fmt::join(names, ", "));
+    } catch (const FileError& error) {
+      mistake = error.what();
+    }
+  }
+  mistake = broadcast(comm, mistake, 0);
+  if (!mistake.empty()) throw InputError({fmt::format("--restart {}: {}", directory, mistake)});
+  std::istringstream list(broadcast(comm, fmt::format("{}", fmt::join(paths, "\n")), 0));
+  paths.clear();
+  for (std::string path; std::getline(list, path);) paths.insert(paths.begin(), path);
+  return paths;
+}
+
+/// The case text of a checkpoint. Throws FileError on all ranks. Collective.
+NamedText case_of_checkpoint(MPI_Comm comm, const std::string& path) {
+  std::string text, failure;
+  if (rank_of(comm) == 0) {
+    try {
+      text = read_header(path).case_text;
+    } catch (const FileError& error) {
+      failure = error.what();
+    }
+  }
+  failure = broadcast(comm, failure, 0);
+  if (!failure.empty()) throw FileError(failure);
+  return {path, broadcast(comm, text, 0)};
+}
+
+}  // namespace
+
+std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::string& path) {
+  std::vector<NamedText> files;
+  std::vector<std::string> mistakes;
+  if (rank_of(comm) == 0) {
+    try {
+      files = load_case_files(path);
+    } catch (const InputError& error) {
+      mistakes = error.mistakes();
+    }
+  }
+  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
+  files.resize(static_cast<std::size_t>(sum_over_ranks(comm, static_cast<std::int64_t>(files.size()))));
+  for (auto& [name, text] : files) {
+    name = broadcast(comm, name, 0);
+    text = broadcast(comm, text, 0);
+  }
+  return files;
+}
+
+void check_case(MPI_Comm comm, const Case& config) {
+  with_dimension(config, [&](auto dimension) { check<dimension()>(comm, config); });
+}
+
+void plan_case(MPI_Comm comm, const Case& config, int ranks) {
+  refuse_unused_options(comm, {});
+  with_dimension(config, [&](auto dimension) {
+    const Plan plan = plan_run<dimension()>(comm, config, ranks);
+    if (rank_of(comm) == 0) print_plan(config, plan);
+  });
+}
+
+bool run_case(MPI_Comm comm, const Case& config) {
+  return with_dimension(config, [&](auto dimension) { return start_run<dimension()>(comm, config); });
+}
+
+bool restart_case(MPI_Comm comm, const std::string& directory, const std::vector<std::string>& settings) {
+  for (const std::string& path : checkpoints_to_try(comm, directory)) {
+    std::function<bool()> continued_run;
+    try {
+      const Case config = parse_restart(case_of_checkpoint(comm, path), settings, directory);
+      if (const std::string name = name_and_step(path).first; name != config.name)
+        throw FileError(fmt::format("cannot read {}: it is of the case {}", path, config.name));
+      with_dimension(config, [&](auto dimension) {
+        const auto simulation = restored<dimension()>(comm, config, path);
+        continued_run = [=] { return go_on(comm, config, *simulation); };
+      });
+    } catch (const FileError& error) {
+      if (rank_of(comm) == 0) fmt::print(stderr, "impinge: {}\n", error.what());
+      continue;
+    }
+    return continued_run();
+  }
+  throw InputError({fmt::format("--restart {}: no checkpoint there can be read", directory)});
+}
+
+}  // namespace impinge

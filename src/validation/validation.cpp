@@ -1,0 +1,301 @@
+#include "impinge/validation/validation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "impinge/core/errors.hpp"
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+using Side = AnalyticJet::Side;
+
+/// A metric's key in the report.
+struct MetricKey {
+  const char* name;
+  std::optional<double> JetMetrics::*value;
+  const char* meaning;
+};
+
+constexpr MetricKey metric_keys[] = {
+    {"wall_l2", &JetMetrics::wall_l2, "relative L2 error of the averaged wall pressure"},
+    {"force_ratio", &JetMetrics::force_ratio, "force on the plate over rho U^2 H sin a"},
+    {"peak_pressure", &JetMetrics::peak_pressure, "largest averaged wall pressure [Pa]"},
+    {"peak_x", &JetMetrics::peak_x, "its distance from the stagnation point [m]"},
+    {"stagnation_mean", &JetMetrics::stagnation_mean, "wall pressure at the stagnation point, mean [Pa]"},
+    {"stagnation_scatter", &JetMetrics::stagnation_scatter, "its standard deviation over the snapshots [Pa]"},
+    {"field_l2", &JetMetrics::field_l2, "relative L2 error of the pressure in a snapshot"},
+    {"mean_field_l2", &JetMetrics::mean_field_l2, "the same of the averaged pressure"},
+    {"velocity_rms", &JetMetrics::velocity_rms, "RMS error of the velocity over U"},
+    {"surface_rms_dp", &JetMetrics::surface_rms_dp, "RMS distance from the analytic free surface [dp]"},
+    {"film_h1", &JetMetrics::film_h1, "thickness of the thick sheet over h1"},
+    {"film_h2", &JetMetrics::film_h2, "thickness of the thin sheet over h2"},
+};
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+/// Particle counts in a line of the history.
+struct Stock {
+  std::int64_t step, in, out, fluid;
+};
+
+/// The last line of a history; nothing without a file or without a line. Throws FileError.
+std::optional<Stock> last_stock(const std::string& path) {
+  if (!fs::exists(path)) return std::nullopt;
+  std::ifstream file(path);
+  std::string line, last;
+  std::getline(file, line);
+  const auto columns = split(line);
+  while (std::getline(file, line)) last = line;
+  if (!file.eof()) throw FileError(fmt::format("cannot read {}", path));
+  if (last.empty()) return std::nullopt;
+  const auto fields = split(last);
+  const auto number = [&](const char* name) {
+    const auto column = static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
+    std::int64_t value = 0;
+    if (column < std::min(columns.size(), fields.size())) {
+      const std::string& text = fields[column];
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error == std::errc() && end == text.data() + text.size()) return value;
+    }
+    throw FileError(fmt::format("cannot read {}: the last line has no whole number in the column '{}'", path, name));
+  };
+  return Stock{number("step"), number("in"), number("out"), number("fluid")};
+}
+
+std::int64_t count_fluid(const Particles<2>& particles) {
+  return std::count(particles.type.begin(), particles.type.begin() + particles.owned, ParticleType::fluid);
+}
+
+nlohmann::json to_json(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nullptr; }
+
+/// A file that is written line by line.
+class TextFile {
+ public:
+  explicit TextFile(const fs::path& path) : path_(path), file_(path) {}
+
+  template <class... Values>
+  void print(fmt::format_string<Values...> format, Values&&... values) {
+    file_ << fmt::format(format, std::forward<Values>(values)...);
+  }
+
+  /// Throws FileError if anything went wrong so far.
+  void finish() {
+    file_.close();
+    if (!file_) throw FileError(fmt::format("cannot write {}", path_.string()));
+  }
+
+ private:
+  fs::path path_;
+  std::ofstream file_;
+};
+
+/// Free surfaces h1 and h2, from the sheet's end to the jet's.
+void write_surface(const AnalyticJet& jet, const Case& config, const fs::path& path) {
+  TextFile file(path);
+  file.print("sheet,x_m,y_m\n");
+  for (const Side side : {Side::h1, Side::h2}) {
+    const double sheet_length = std::abs(side == Side::h1 ? config.plate.end : config.plate.begin);
+    for (const Vector<2>& point :
+         jet.surface(side, sheet_length, config.jet.inlet_distance * jet.width(), config.particles.spacing))
+      file.print("{},{:.9g},{:.9g}\n", side == Side::h1 ? 1 : 2, point[0], point[1]);
+  }
+  file.finish();
+}
+
+/// Lines of equal pressure, from plate to plate: |zeta|^2 = 1 - Cp.
+void write_isobars(const AnalyticJet& jet, const Case& config, const fs::path& path) {
+  constexpr int levels = 40, segments = 2000;
+  TextFile file(path);
+  file.print("cp,x_m,y_m\n");
+  for (int level = 1; level < levels; ++level) {
+    const double cp = static_cast<double>(level) / levels;
+    Vector<2> drawn;
+    for (int k = 0; k <= segments; ++k) {
+      const Vector<2> point = jet.position(std::polar(std::sqrt(1.0 - cp), std::numbers::pi * k / segments));
+      if (k > 0 && k < segments && norm(point - drawn) < 0.5 * config.particles.spacing) continue;
+      drawn = point;
+      file.print("{},{:.9g},{:.9g}\n", cp, point[0], point[1]);
+    }
+  }
+  file.finish();
+}
+
+}  // namespace
+
+Validation validate(const std::string& directory, const SnapshotSelection& selection) {
+  if (!fs::is_directory(directory)) throw InputError({fmt::format("{}: no such directory", directory)});
+  const std::vector<std::string> paths = list_snapshots(directory);
+  if (paths.empty()) throw InputError({fmt::format("{}: no snapshot (*.vtkhdf) in this directory", directory)});
+  std::vector<SnapshotHeader> headers;
+  for (const std::string& path : paths) headers.push_back(read_header(path));
+
+  Validation result;
+  result.last = headers.back();
+  result.last_path = paths.back();
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    if (headers[k].case_text != result.last.case_text)
+      throw InputError({fmt::format("{}: {} and {} are of different cases; one directory, one run", directory, paths[k],
+                                    result.last_path)});
+  result.config = parse_case({{result.last_path, result.last.case_text}});
+  const Case& config = result.config;
+  if (config.geometry != SceneType::jet)
+    throw InputError({fmt::format("{}: the case {} is not a jet; only a jet has an analytic solution here", directory,
+                                  config.name)});
+
+  JetComparison comparison(config);
+  Particles<2> particles;
+  const auto averaged = std::find_if(headers.rbegin(), headers.rend(),
+                                     [](const SnapshotHeader& h) { return h.window_end > h.window_begin; });
+  if (averaged != headers.rend()) {
+    result.window = {averaged->window_begin, averaged->window_end};
+    read_snapshot(MPI_COMM_SELF, paths[static_cast<std::size_t>(headers.rend() - averaged) - 1], particles);
+    comparison.set_wall_average(particles, averaged->window_end - averaged->window_begin);
+  }
+
+  TimeSpan span = result.window.value_or(TimeSpan{result.last.time, result.last.time});
+  if (selection.from || selection.to)
+    span = {selection.from.value_or(headers.front().time), selection.to.value_or(result.last.time)};
+  const double tolerance = 1e-9 * config.time.end;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (!(headers[k].time >= span.begin - tolerance && headers[k].time <= span.end + tolerance)) continue;
+    read_snapshot(MPI_COMM_SELF, paths[k], particles);
+    comparison.add_snapshot(particles);
+    result.times.push_back(headers[k].time);
+  }
+  if (result.times.empty())
+    throw InputError(
+        {fmt::format("{}: no snapshot between {:.6g} s and {:.6g} s; the run's are from {:.6g} s to {:.6g} s",
+                     directory, span.begin, span.end, headers.front().time, result.last.time)});
+
+  result.metrics = comparison.metrics();
+  result.wall = comparison.wall_profile();
+  result.film = comparison.film_profile();
+  result.analytic_film_h1 = comparison.analytic_film(Side::h1);
+  result.analytic_film_h2 = comparison.analytic_film(Side::h2);
+
+  if (const auto stock = last_stock((fs::path(directory) / (config.name + "_history.csv")).string())) {
+    std::int64_t stored = stock->fluid;
+    if (stock->step == result.last.step) {
+      read_snapshot(MPI_COMM_SELF, result.last_path, particles);
+      stored = count_fluid(particles);
+    }
+    result.particle_balance = stock->in - stock->out - stored;
+  }
+  return result;
+}
+
+std::string to_json(const Validation& validation) {
+  using nlohmann::json;
+  const Case& config = validation.config;
+  const AnalyticJet jet = analytic_jet(config);
+  nlohmann::ordered_json report;
+  report["case"] = config.name;
+  report["code_version"] = validation.last.code_version;
+  report["status"] = validation.last.status;
+  report["message"] = validation.last.message;
+  report["step"] = validation.last.step;
+  report["time"] = validation.last.time;
+  report["last_snapshot"] = fs::path(validation.last_path).filename().string();
+  report["parameters"] = {{"angle", config.jet.angle},
+                          {"width", config.jet.width},
+                          {"speed", config.jet.speed},
+                          {"density", config.fluid.density},
+                          {"spacing", config.particles.spacing},
+                          {"width_over_spacing", config.jet.width / config.particles.spacing},
+                          {"scheme", config.scheme == Scheme::paper ? "paper" : "consistent"},
+                          {"gamma", config.pressure.gamma},
+                          {"kernel", config.kernel.type == KernelType::singular ? "singular" : "non_singular"},
+                          {"plate_begin", config.plate.begin},
+                          {"plate_end", config.plate.end}};
+  report["analytic"] = {{"stagnation_pressure", jet.stagnation_pressure()},
+                        {"normal_force", jet.normal_force()},
+                        {"h1", jet.sheet_thickness(Side::h1)},
+                        {"h2", jet.sheet_thickness(Side::h2)},
+                        {"film_h1", to_json(validation.analytic_film_h1)},
+                        {"film_h2", to_json(validation.analytic_film_h2)}};
+  report["window"] = nullptr;
+  if (validation.window) report["window"] = {{"begin", validation.window->begin}, {"end", validation.window->end}};
+  report["snapshots"] = {{"count", validation.times.size()},
+                         {"first_time", validation.times.front()},
+                         {"last_time", validation.times.back()}};
+  for (const MetricKey& key : metric_keys) report["metrics"][key.name] = to_json(validation.metrics.*key.value);
+  report["metrics"]["particle_balance"] =
+      validation.particle_balance ? json(*validation.particle_balance) : json(nullptr);
+  return report.dump(2) + "\n";
+}
+
+/// The scheme, and what the paper varies in it.
+std::string scheme_text(const Case& config) {
+  return config.scheme == Scheme::paper ? fmt::format("paper's scheme, gamma = {}", config.pressure.gamma)
+                                        : "consistent scheme";
+}
+
+std::string to_table(const Validation& validation) {
+  const Case& config = validation.config;
+  const SnapshotHeader& last = validation.last;
+  std::string table = fmt::format("case       {}: {} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
+                                  config.jet.angle, config.jet.width / config.particles.spacing, scheme_text(config),
+                                  config.kernel.type == KernelType::singular ? "singular" : "non-singular");
+  table += fmt::format("run        {} at t = {:.6g} s, step {}\n", last.status, last.time, last.step);
+  if (!last.message.empty()) table += fmt::format("           {}\n", last.message);
+  table += validation.window ? fmt::format("averaged   wall pressure from {:.6g} s to {:.6g} s\n",
+                                           validation.window->begin, validation.window->end)
+                             : std::string("averaged   nothing yet\n");
+  table += fmt::format("compared   {} snapshot(s) from {:.6g} s to {:.6g} s\n\n", validation.times.size(),
+                       validation.times.front(), validation.times.back());
+  const auto row = [&](const char* name, const std::string& value, const char* meaning) {
+    table += fmt::format("  {:<18} {:>10}  {}\n", name, value, meaning);
+  };
+  for (const MetricKey& key : metric_keys) {
+    const auto value = validation.metrics.*key.value;
+    row(key.name, value ? fmt::format("{:.4g}", *value) : "-", key.meaning);
+  }
+  row("particle_balance", validation.particle_balance ? fmt::format("{}", *validation.particle_balance) : "-",
+      "particles in minus out minus stored");
+  return table;
+}
+
+void write_report(const Validation& validation, const std::string& directory) {
+  const fs::path folder(directory);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(fmt::format("cannot create {}: {}", directory, error.message()));
+
+  TextFile wall(folder / "wall_pressure.csv");
+  wall.print("x_m,pressure_Pa,analytic_Pa\n");
+  for (const WallPoint& point : validation.wall)
+    wall.print("{:.9g},{:.9g},{:.9g}\n", point.x, point.pressure, point.analytic);
+  wall.finish();
+
+  TextFile film(folder / "film_thickness.csv");
+  film.print("x_m,thickness_m,analytic_m\n");
+  for (const FilmColumn& column : validation.film)
+    film.print("{:.9g},{:.9g},{:.9g}\n", column.x, column.thickness, column.analytic);
+  film.finish();
+
+  const AnalyticJet jet = analytic_jet(validation.config);
+  write_surface(jet, validation.config, folder / "surface.csv");
+  write_isobars(jet, validation.config, folder / "isobars.csv");
+
+  TextFile report(folder / "validation.json");
+  report.print("{}", to_json(validation));
+  report.finish();
+}
+
+}  // namespace impinge
