@@ -81,7 +81,7 @@ void expect_the_same_run(const Case& config, int steps) {
 }
 
 class RunOfScheme : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(All, RunOfScheme, testing::Values("scheme=consistent", "scheme=paper", "walls.model=columns"),
+INSTANTIATE_TEST_SUITE_P(All, RunOfScheme, testing::Values("scheme=consistent", "scheme=paper"),
                          [](const auto& test) { return test.param.substr(test.param.find('=') + 1); });
 
 TEST_P(RunOfScheme, ImpactingJetIsThatOfASingleRank) { expect_the_same_run<2>(jet_case({GetParam()}), 100); }

@@ -179,7 +179,7 @@ TEST(Case, GivenKeysWinOverTheScheme) {
       }
     }
   }
-  EXPECT_EQ(parse("walls.model = \"columns\"").walls.model, WallModel::columns);
+  EXPECT_EQ(parse("walls.model = \"particles\"").walls.model, WallModel::particles);
 }
 
 TEST(Case, DescribeNamesTheDefaultsOfBothSchemes) {
@@ -197,8 +197,7 @@ TEST(Case, FindsMistakesInTheSchemesKeys) {
   EXPECT_EQ(mistakes_in("scheme = \"best\""),
             Texts{"case.toml:1: scheme = \"best\": unknown word; allowed: \"consistent\", \"paper\""});
   EXPECT_EQ(mistakes_in("walls.model = \"bricks\""),
-            Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"columns\", "
-                  "\"particles\""});
+            Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"particles\""});
   EXPECT_EQ(mistakes_in("pressure.density_speed = 5.1"),
             Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_max)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
@@ -817,7 +816,7 @@ TEST(RestartCase, RefusesWhatARunCannotChange) {
                    "--set: jet.speed = 2.0: a restart cannot change this key; allowed: 1.0",
                    "--set: output.directory = \"here\": a restart cannot change this key; allowed: \"output/x\""}));
   for (const char* setting :
-       {"name=y", "scheme=paper", "fluid.density=900", "kernel.radius=2.5", "walls.model=columns", "plate.end=3"})
+       {"name=y", "scheme=paper", "fluid.density=900", "kernel.radius=2.5", "walls.model=particles", "plate.end=3"})
     EXPECT_EQ(mistakes_of({setting}).size(), 1u) << setting;
   EXPECT_EQ(mistakes_of({"time.dt=-1"}), (Texts{"--set: time.dt = -1: out of range; allowed: > 0 (s)"}));
 }

@@ -63,7 +63,7 @@ TYPED_TEST_SUITE(FreeSurface, Dimensions);
 TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
   for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
     const Cloud<TestFixture::Dim> lattice(0.0, kernel);
-    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius, 1);
+    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius);
     const auto pressure = [&](int i) {
       return 11.0 - lattice.particles.position[static_cast<std::size_t>(i)][TestFixture::Dim - 1];
     };
@@ -84,25 +84,11 @@ TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
 }
 
 TYPED_TEST(FreeSurface, ClosureIsInterpolatedBetweenTheRows) {
-  const SurfaceClosure<TestFixture::Dim> closure(KernelType::non_singular, far_radius, 1);
+  const SurfaceClosure<TestFixture::Dim> closure(KernelType::non_singular, far_radius);
   for (double depth = 0.5; depth < 4.0; depth += 0.037) {
     const auto [weight, height] = this->missing(KernelType::non_singular, depth);
     const double expected = weight + height / depth;
     EXPECT_NEAR(closure.weight(depth), expected, 0.01 + 1e-3 * expected) << "depth " << depth;
-  }
-}
-
-TYPED_TEST(FreeSurface, ClosesAColumnAsAWhole) {
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
-    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius, 4);
-    for (const double depth : {0.5, 1.5, 2.5}) {
-      double expected = 0.0;
-      for (const int layer : {0, 1, 2, 3}) {
-        const auto [weight, height] = this->missing(kernel, depth + layer);
-        expected += weight + height / depth;
-      }
-      EXPECT_NEAR(closure.weight(depth), expected, 1e-10) << "depth " << depth;
-    }
   }
 }
 

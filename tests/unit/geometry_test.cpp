@@ -80,28 +80,6 @@ double smallest_distance(const Particles<Dim>& particles) {
   return smallest;
 }
 
-/// Every ghost's wall particle is the one nearest to it.
-template <int Dim>
-void expect_nearest_walls_of_ghosts(const Case& config) {
-  const Particles<Dim> particles = fill<Dim>(config);
-  const auto geometry = make_geometry<Dim>(config);
-  ASSERT_GT(count(particles, ParticleType::ghost), 0);
-  for (int ghost = 0; ghost < particles.owned; ++ghost) {
-    const auto& position = particles.position[static_cast<std::size_t>(ghost)];
-    if (particles.type[static_cast<std::size_t>(ghost)] != ParticleType::ghost) continue;
-    double nearest = 1e300;
-    std::int64_t wall = -1;
-    for (std::size_t j = 0; j < particles.id.size(); ++j) {
-      const double distance = norm(particles.position[j] - position);
-      if (particles.type[j] != ParticleType::wall || distance >= nearest) continue;
-      nearest = distance;
-      wall = particles.id[j];
-    }
-    ASSERT_EQ(geometry->wall_of_ghost(particles.id[static_cast<std::size_t>(ghost)]), wall)
-        << "ghost at " << position[0] << ", " << position[1];
-  }
-}
-
 /// The fluid is the same whatever the walls are.
 void expect_the_same_fluid(const Case& config, const Case& other) {
   const auto fluid = [](const Particles<2>& particles) {
@@ -175,11 +153,6 @@ TEST(Tank, FloorIsTheBottomWallRow) {
   }
 }
 
-TEST(Tank, GhostsStandBehindTheNearestWallParticle) {
-  expect_nearest_walls_of_ghosts<2>(tank_case(2));
-  expect_nearest_walls_of_ghosts<3>(tank_case(3));
-}
-
 template <int Dim>
 void expect_mirrored_tank(const Vector<Dim>& size, int walls) {
   const Case config = tank_case(Dim, "mirror");
@@ -218,8 +191,6 @@ TEST(Tank, OfMirrorsHasWallParticlesOnTheSurfaceOnly) {
   expect_mirrored_tank<3>({{0.2, 0.05, 0.1}}, 22 * 7 * 11 - 20 * 5 * 10);
   expect_the_same_fluid(tank_case(2, "mirror"), tank_case(2));
 }
-
-TEST(Jet, GhostsStandBehindTheNearestWallParticle) { expect_nearest_walls_of_ghosts<2>(jet_case(60.0, "steady")); }
 
 TEST(Jet, OnAMirrorHasWallParticlesOnTheSurfaceOnly) {
   for (const char* start : {"impact", "steady"}) {
@@ -272,7 +243,7 @@ TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
 
 TEST(Geometry, ParticlesStartInsideTheBounds) {
   for (const Case& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady"),
-                               tank_case(2, "mirror"), jet_case(30.0, "steady", "mirror")}) {
+                             tank_case(2, "mirror"), jet_case(30.0, "steady", "mirror")}) {
     const Box<2> bounds = make_geometry<2>(config)->bounds();
     const Particles<2> particles = fill<2>(config);
     for (const auto& position : particles.position) {

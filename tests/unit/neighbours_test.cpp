@@ -2,8 +2,6 @@
 
 #include "impinge/particles/neighbours.hpp"
 
-#include <map>
-#include <numeric>
 #include <set>
 
 #include "cloud.hpp"
@@ -75,29 +73,6 @@ class Neighbours : public testing::Test {
     NeighbourSearch<Dim> found(cells(), reach, KernelType::non_singular, near_radius, far_radius, true);
     found.search(particles);
     return found;
-  }
-
-  static NeighbourSearch<Dim> search(const Particles<Dim>& particles, std::span<const int> column) {
-    NeighbourSearch<Dim> found(cells(), reach, KernelType::non_singular, near_radius, far_radius);
-    found.search(particles, column);
-    return found;
-  }
-
-  /// Each ghost with some wall particle, on the same side of the halo's begin.
-  static std::vector<int> columns(const Particles<Dim>& particles) {
-    std::vector<int> column(particles.position.size());
-    std::iota(column.begin(), column.end(), 0);
-    for (const bool halo : {false, true}) {
-      std::vector<int> walls;
-      const auto is = [&](std::size_t i, ParticleType type) {
-        return (static_cast<int>(i) >= particles.owned) == halo && particles.type[i] == type;
-      };
-      for (std::size_t i = 0; i < column.size(); ++i)
-        if (is(i, ParticleType::wall)) walls.push_back(static_cast<int>(i));
-      for (std::size_t i = 0; i < column.size(); ++i)
-        if (is(i, ParticleType::ghost)) column[i] = walls.at((i + i / 9) % walls.size());
-    }
-    return column;
   }
 
   /// The far rows, each of which, unless it is empty, must hold the particle itself, once, with weight 0.
@@ -196,86 +171,6 @@ TYPED_TEST(Neighbours, WallParticlesOnMirrorsMeasureOnly) {
                                                                is_no_wall);
     this->template expect_brute_force_pairs<NonSingularKernel>(particles, this->far_of(found), far_radius, is_fluid,
                                                                is_no_wall);
-  }
-}
-
-TYPED_TEST(Neighbours, OfColumnsAreThoseOfBruteForce) {
-  for (const auto& particles : {this->all_owned(), this->half_owned()}) {
-    const std::vector<int> column = this->columns(particles);
-    auto found = this->search(particles, column);
-    this->template expect_brute_force_pairs<NonSingularKernel>(
-        particles, found.near(), near_radius, [](ParticleType type) { return type != ParticleType::inlet; });
-
-    std::map<std::pair<int, int>, double> expected;
-    for (int i = 0; i < particles.owned; ++i) {
-      const int row = column[static_cast<std::size_t>(i)];
-      if (particles.type[static_cast<std::size_t>(i)] == ParticleType::inlet) continue;
-      for (int j = 0; j < particles.size(); ++j) {
-        const int other = column[static_cast<std::size_t>(j)];
-        const double r =
-            norm(particles.position[static_cast<std::size_t>(j)] - particles.position[static_cast<std::size_t>(i)]);
-        if (r < far_radius && other != row) expected[{row, other}] += NonSingularKernel::weight(r, far_radius);
-      }
-    }
-    const PairList far = this->far_of(found);
-    ASSERT_EQ(far.rows(), particles.owned);
-    std::map<std::pair<int, int>, double> actual;
-    for (int i = 0; i < particles.owned; ++i) {
-      int last = -1;
-      for (int k = far.begin(i); k < far.end(i); ++k) {
-        const int j = far.index[static_cast<std::size_t>(k)];
-        ASSERT_TRUE(actual.try_emplace({i, j}, far.weight[static_cast<std::size_t>(k)]).second) << "listed twice";
-        if (j >= particles.owned) continue;
-        EXPECT_GT(j, last);
-        last = j;
-      }
-    }
-    ASSERT_EQ(actual.size(), expected.size());
-    for (const auto& [pair, weight] : actual) {
-      const auto& [i, j] = pair;
-      ASSERT_TRUE(expected.contains(pair)) << i << ", " << j;
-      EXPECT_NEAR(weight, expected[pair], 1e-12) << i << ", " << j;
-      if (j < particles.owned && particles.type[static_cast<std::size_t>(j)] != ParticleType::inlet) {
-        EXPECT_NEAR(weight, actual.at({j, i}), 1e-12) << i << ", " << j;
-      }
-    }
-  }
-}
-
-TYPED_TEST(Neighbours, OfASingleColumnHaveOnePair) {
-  Particles<TestFixture::Dim> particles;
-  for (const ParticleType type : {ParticleType::ghost, ParticleType::wall, ParticleType::fluid}) {
-    const int i = particles.owned;
-    Vector<TestFixture::Dim> position;
-    position.component.fill(1.0);
-    position[0] += i;
-    particles.append({position, {}, 0.0, 0.0, i, type});
-  }
-  auto found = this->search(particles, std::vector<int>{1, 1, 2});
-  const double both = NonSingularKernel::weight(1.0, far_radius) + NonSingularKernel::weight(2.0, far_radius);
-  const PairList far = this->far_of(found);
-  EXPECT_EQ(far.start, (std::vector<int>{0, 0, 1, 2}));
-  for (const auto& [pair, neighbour] : {std::pair{0U, 2}, std::pair{1U, 1}}) {
-    EXPECT_EQ(far.index[pair], neighbour);
-    EXPECT_NEAR(far.weight[pair], both, 1e-14);
-  }
-}
-
-TYPED_TEST(Neighbours, RowsOfColumnsKeepTheirOrderWhoeverOwnsTheParticles) {
-  const auto half = this->half_owned();
-  auto whole = this->all_owned();
-  std::map<std::int64_t, int> place;
-  for (int i = 0; i < whole.owned; ++i) place[whole.id[static_cast<std::size_t>(i)]] = i;
-  const auto in_whole = [&](int i) { return place.at(half.id[static_cast<std::size_t>(i)]); };
-  const std::vector<int> column = this->columns(half);
-  std::vector<int> whole_column(column.size());
-  for (int i = 0; i < half.size(); ++i)
-    whole_column[static_cast<std::size_t>(in_whole(i))] = in_whole(column[static_cast<std::size_t>(i)]);
-  auto half_found = this->search(half, column);
-  auto whole_found = this->search(whole, whole_column);
-  const PairList half_far = this->far_of(half_found), whole_far = this->far_of(whole_found);
-  for (int i = 0; i < half.owned; ++i) {
-    EXPECT_EQ(this->neighbour_ids(half_far, half, i), this->neighbour_ids(whole_far, whole, in_whole(i)));
   }
 }
 

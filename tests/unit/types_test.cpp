@@ -4,6 +4,7 @@
 
 #include "dimensions.hpp"
 #include "impinge/core/vector.hpp"
+#include "impinge/particles/cell_grid.hpp"
 
 namespace impinge {
 namespace {
