@@ -5,11 +5,35 @@
 #include <random>
 #include <tuple>
 
+#include "impinge/boundaries/mirror_walls.hpp"
 #include "impinge/particles/cell_grid.hpp"
 #include "impinge/particles/neighbours.hpp"
 #include "impinge/particles/particles.hpp"
 
 namespace impinge {
+
+/// What is beyond the ends of a test's box.
+enum class Edge { open, periodic, mirror };
+
+template <int Dim>
+std::array<bool, Dim> periodic_axes(Edge edge) {
+  std::array<bool, Dim> axes;
+  axes.fill(edge == Edge::periodic);
+  return axes;
+}
+
+/// Mirrors on all sides of a box, if its edges are some.
+template <int Dim>
+MirrorWalls<Dim> mirrors_of(Edge edge, const Box<Dim>& box, double reach) {
+  std::vector<Face<Dim>> faces;
+  for (int k = 0; k < Dim && edge == Edge::mirror; ++k) {
+    Face<Dim> low{box.low, {}}, high{box.high, {}};
+    low.normal[k] = 1.0;
+    high.normal[k] = -1.0;
+    faces.insert(faces.end(), {low, high});
+  }
+  return {faces, reach};
+}
 
 /// A lattice of spacing 1 in the box [0, extent), each particle displaced by up to `jitter` along every axis; velocity
 /// and pressure are random. Fluid, ids 0, 1, 2, ... The same at every call.

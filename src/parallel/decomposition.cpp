@@ -45,9 +45,9 @@ std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std
   }
   for (const int cell : cell_of) {
     if (!needs_edges(comm, partitioner)) break;
-    for_cells_around(cells, cell, 1, [&](int neighbour, const Image<Dim>& image) {
+    for_cells_around(cells, cell, 1, [&](int neighbour, const Vector<Dim>&) {
       const auto n = static_cast<std::size_t>(neighbour);
-      if (vertex_of[n] < 0 || neighbour == cell || image.reflects()) return;
+      if (vertex_of[n] < 0 || neighbour == cell) return;
       graph.neighbour.push_back(vertex_of[n]);
       graph.edge_weight.push_back(work[static_cast<std::size_t>(cell)] + work[n]);
     });
@@ -65,7 +65,7 @@ std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std
   while (!front.empty()) {
     const int cell = front.front();
     front.pop_front();
-    for_cells_around(cells, cell, 1, [&](int neighbour, const Image<Dim>&) {
+    for_cells_around(cells, cell, 1, [&](int neighbour, const Vector<Dim>&) {
       int& next = owner[static_cast<std::size_t>(neighbour)];
       if (next >= 0) return;
       next = owner[static_cast<std::size_t>(cell)];
@@ -81,17 +81,17 @@ void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner,
                          std::vector<HaloTarget<Dim>>& targets) {
   const auto first = static_cast<std::ptrdiff_t>(targets.size());
   const HaloTarget<Dim> self{owner[static_cast<std::size_t>(cell)], {}};
-  for_cells_around(cells, cell, 1, [&](int neighbour, const Image<Dim>& image) {
-    const HaloTarget<Dim> target{owner[static_cast<std::size_t>(neighbour)], image};
+  for_cells_around(cells, cell, 1, [&](int neighbour, const Vector<Dim>& shift) {
+    const HaloTarget<Dim> target{owner[static_cast<std::size_t>(neighbour)], shift};
     if (target == self || std::find(targets.begin() + first, targets.end(), target) != targets.end()) return;
     targets.push_back(target);
   });
 }
 
 template <int Dim>
-Decomposition<Dim>::Decomposition(MPI_Comm comm, const Box<Dim>& box, const Edges<Dim>& edges, double reach,
-                                  Partitioner partitioner)
-    : comm_(comm), cells_(box, edges, reach), fine_(cells_.refined(cell_parts)), partitioner_(partitioner) {}
+Decomposition<Dim>::Decomposition(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic,
+                                  double reach, Partitioner partitioner)
+    : comm_(comm), cells_(box, periodic, reach), fine_(cells_.refined(cell_parts)), partitioner_(partitioner) {}
 
 template <int Dim>
 void Decomposition<Dim>::partition(const Particles<Dim>& particles) {
@@ -152,9 +152,7 @@ std::int64_t Decomposition<Dim>::migrate(Particles<Dim>& particles) {
   std::vector<ParticleRecord<Dim>> packed;
   for (int i = 0; i < particles.owned; ++i) {
     ParticleRecord<Dim> record = particles.record(i);
-    Image<Dim> image;
-    record.position = cells_.wrapped(record.position, image);
-    record.velocity = image.of_direction(record.velocity);
+    record.position = cells_.wrapped(record.position);
     const int cell = cells_.cell(record.position);
     if (cell < 0) {
       ++lost;
@@ -219,20 +217,18 @@ void Decomposition<Dim>::build_halo(Particles<Dim>& particles) {
   std::sort(sends.begin(), sends.end());
   std::vector<std::pair<int, int>> runs;
   std::vector<int> index;
-  std::vector<Image<Dim>> images;
+  std::vector<Vector<Dim>> shifts;
   std::vector<HaloRecord> packed;
   for (const auto& [rank, i, target] : sends) {
     if (runs.empty() || runs.back().first != rank) runs.emplace_back(rank, 0);
     ++runs.back().second;
     index.push_back(i);
-    images.push_back(targets_[static_cast<std::size_t>(target)].image);
+    shifts.push_back(targets_[static_cast<std::size_t>(target)].shift);
     packed.push_back({particles.record(i), first_row + i});
-    ParticleRecord<Dim>& record = packed.back().particle;
-    record.position = images.back().of_position(record.position);
-    record.velocity = images.back().of_direction(record.velocity);
+    packed.back().particle.position += shifts.back();
   }
   halo_ = Halo(Exchange(comm_, runs), std::move(index));
-  halo_image_ = std::move(images);
+  halo_shift_ = std::move(shifts);
 
   std::vector<HaloRecord> received(static_cast<std::size_t>(halo_.exchange().n_receive()));
   halo_.exchange().forward(packed.data(), received.data());
@@ -248,18 +244,10 @@ void Decomposition<Dim>::build_halo(Particles<Dim>& particles) {
 
 template <int Dim>
 void Decomposition<Dim>::refresh_positions(Particles<Dim>& particles) const {
-  std::vector<Vector<Dim>> packed(halo_image_.size());
+  std::vector<Vector<Dim>> packed(halo_shift_);
   for (std::size_t k = 0; k < packed.size(); ++k)
-    packed[k] = halo_image_[k].of_position(particles.position[static_cast<std::size_t>(halo_.index()[k])]);
+    packed[k] += particles.position[static_cast<std::size_t>(halo_.index()[k])];
   halo_.exchange().forward(packed.data(), particles.position.data() + particles.owned);
-}
-
-template <int Dim>
-void Decomposition<Dim>::refresh_directions(std::vector<Vector<Dim>>& directions, int owned) const {
-  std::vector<Vector<Dim>> packed(halo_image_.size());
-  for (std::size_t k = 0; k < packed.size(); ++k)
-    packed[k] = halo_image_[k].of_direction(directions[static_cast<std::size_t>(halo_.index()[k])]);
-  halo_.exchange().forward(packed.data(), directions.data() + owned);
 }
 
 template void add_work(const CellGrid<2>&, const Particles<2>&, std::span<int>);

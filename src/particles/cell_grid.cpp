@@ -6,8 +6,8 @@
 namespace impinge {
 
 template <int Dim>
-CellGrid<Dim>::CellGrid(const Box<Dim>& box, const Edges<Dim>& edges, double smallest_edge)
-    : low_(box.low), edges_(edges) {
+CellGrid<Dim>::CellGrid(const Box<Dim>& box, const std::array<bool, Dim>& periodic, double smallest_edge)
+    : low_(box.low), periodic_(periodic) {
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const double length = box.high[k] - box.low[k];
@@ -72,28 +72,18 @@ int CellGrid<Dim>::cell(const Vector<Dim>& position) const {
 }
 
 template <int Dim>
-int CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Image<Dim>& image) const {
-  image = {};
+int CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Vector<Dim>& shift) const {
+  shift = {};
   int index = 0;
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const int n = extent_[axis];
     int& at = coordinates[axis];
     if (at < 0 || at >= n) {
-      const bool low = at < 0;
-      switch (low ? edges_[axis].low : edges_[axis].high) {
-        case Edge::open:
-          return -1;
-        case Edge::periodic:
-          image.shift[k] = (low ? n : -n) * edge_[k];
-          at += low ? n : -n;
-          break;
-        case Edge::mirror:
-          image.sign[k] = -1.0;
-          image.shift[k] = 2.0 * (low ? low_[k] : low_[k] + n * edge_[k]);
-          at = (low ? 0 : 2 * n) - 1 - at;
-          if (at < 0 || at >= n) return -1;
-      }
+      if (!periodic_[axis]) return -1;
+      const int periods = at < 0 ? n : -n;
+      shift[k] = periods * edge_[k];
+      at += periods;
     }
     index = index * n + at;
   }
@@ -101,40 +91,14 @@ int CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Image<Dim>& im
 }
 
 template <int Dim>
-Vector<Dim> CellGrid<Dim>::wrapped(Vector<Dim> position, Image<Dim>& image) const {
-  image = {};
+Vector<Dim> CellGrid<Dim>::wrapped(Vector<Dim> position) const {
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
+    if (!periodic_[axis]) continue;
     const double length = extent_[axis] * edge_[k];
+    if (position[k] < low_[k]) position[k] += length;
     // The condition is the one of cell(): whatever rounding does, a position between the ends has a cell.
-    const auto is_beyond = [&] { return (position[k] - low_[k]) / edge_[k] >= extent_[axis]; };
-    if (edges_[axis].low == Edge::periodic) {
-      if (position[k] < low_[k]) position[k] += length;
-      if (is_beyond()) position[k] = std::max(low_[k], position[k] - length);
-      continue;
-    }
-    if (edges_[axis].low == Edge::mirror && position[k] < low_[k]) {
-      image.sign[k] = -1.0;
-      image.shift[k] = 2.0 * low_[k];
-      position[k] = 2.0 * low_[k] - position[k];
-    }
-    if (edges_[axis].high == Edge::mirror && is_beyond()) {
-      image.sign[k] *= -1.0;
-      image.shift[k] = 2.0 * (low_[k] + length) - image.shift[k];
-      position[k] = 2.0 * (low_[k] + length) - position[k];
-      while (is_beyond()) position[k] = std::nextafter(position[k], low_[k]);
-    }
-  }
-  return position;
-}
-
-template <int Dim>
-Vector<Dim> CellGrid<Dim>::unmirrored(Vector<Dim> position) const {
-  for (int k = 0; k < Dim; ++k) {
-    const auto axis = static_cast<std::size_t>(k);
-    const double high = low_[k] + extent_[axis] * edge_[k];
-    if (edges_[axis].low == Edge::mirror && position[k] < low_[k]) position[k] = 2.0 * low_[k] - position[k];
-    if (edges_[axis].high == Edge::mirror && position[k] > high) position[k] = 2.0 * high - position[k];
+    if ((position[k] - low_[k]) / edge_[k] >= extent_[axis]) position[k] = std::max(low_[k], position[k] - length);
   }
   return position;
 }

@@ -56,13 +56,13 @@ std::size_t pick_within(const std::array<const double*, Dim>& position, const in
 
 template <int Dim>
 NeighbourSearch<Dim>::NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius,
-                                      double far_radius, bool mirrored)
+                                      double far_radius, bool walls_measure)
     : cells_(cells),
       reach_(reach),
       kernel_(kernel),
       near_radius_(near_radius),
       far_radius_(far_radius),
-      mirrored_(mirrored) {
+      walls_measure_(walls_measure) {
   gap2_.fill(std::vector<double>(static_cast<std::size_t>(2 * reach + 1)));
 }
 
@@ -91,7 +91,7 @@ void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
     box_extent_[k] = high[k] - low[k] + 1 + 2 * reach_;
     n_cells *= static_cast<std::size_t>(box_extent_[k]);
   }
-  const auto is_left_out = [&](std::size_t i) { return mirrored_ && particles.type[i] == ParticleType::wall; };
+  const auto is_left_out = [&](std::size_t i) { return walls_measure_ && particles.type[i] == ParticleType::wall; };
   // A counting sort by cells and, within a cell, by ids: the order of the owned particles and of what one rank sent.
   box_cell_.resize(n);
   cell_start_.assign(n_cells + 2, 0);
@@ -107,8 +107,8 @@ void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
   place_.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     if (!is_left_out(i)) entry_[static_cast<std::size_t>(next[box_cell_[i]]++)] = static_cast<int>(i);
-  // Mirror images in one cell may have come from several ranks.
-  for (std::size_t c = 0; mirrored_ && c < n_cells; ++c) {
+  // Images of the particles of several ranks may stand in one cell.
+  for (std::size_t c = 0; walls_measure_ && c < n_cells; ++c) {
     const auto first = entry_.begin() + cell_start_[c], last = entry_.begin() + cell_start_[c + 1];
     const auto id = [&](int i) { return particles.id[static_cast<std::size_t>(i)]; };
     if (!std::ranges::is_sorted(first, last, {}, id)) std::ranges::stable_sort(first, last, {}, id);
@@ -219,7 +219,7 @@ Vector<Dim> NeighbourSearch<Dim>::searched_position(int i) const {
 template <int Dim>
 PairRow NeighbourSearch<Dim>::far_row(int i) {
   const ParticleType type = type_[static_cast<std::size_t>(i)];
-  if (type != ParticleType::fluid && (type != ParticleType::wall || mirrored_)) return {};
+  if (type != ParticleType::fluid && (type != ParticleType::wall || walls_measure_)) return {};
   const std::size_t count = append_within(far_radius_, -1.0, i, searched_position(i), 0);
   weigh(far_radius_, count, weight_.data());
   return {{index_.data(), count}, {weight_.data(), count}};

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/method/costs.hpp"
+#include "impinge/method/pressure/two_level.hpp"
 #include "impinge/parallel/decomposition.hpp"
-#include "impinge/scenes/scene.hpp"
+#include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
 namespace {
@@ -16,13 +17,13 @@ struct CellCounts {
 };
 
 template <int Dim>
-CellCounts count_particles(MPI_Comm comm, const CellGrid<Dim>& cells, const Geometry<Dim>& geometry) {
+CellCounts count_particles(MPI_Comm comm, const CellGrid<Dim>& cells, const Scene<Dim>& scene) {
   const auto n_cells = static_cast<std::size_t>(cells.count());
   CellCounts counts{std::vector<int>(n_cells), std::vector<int>(n_cells), std::vector<int>(n_cells)};
   constexpr int pieces = 64;  // one after the other, so that the particles are never all in memory
   for (int piece = 0; piece < pieces; ++piece) {
     Particles<Dim> particles;
-    geometry.fill(rank_of(comm) * pieces + piece, ranks_of(comm) * pieces, particles);
+    scene.fill(rank_of(comm) * pieces + piece, ranks_of(comm) * pieces, particles);
     add_work<Dim>(cells, particles, counts.work);
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
       const int at = cells.cell(cells.wrapped(particles.position[i]));
@@ -65,7 +66,7 @@ void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, P
   std::vector<int> users;
   for (int cell = 0; cell < cells.count(); ++cell) {
     users.assign(1, owner[static_cast<std::size_t>(cell)]);
-    for_cells_around(cells, cell, TwoLevelPreconditioner<Dim>::node_reach, [&](int near, const Image<Dim>&) {
+    for_cells_around(cells, cell, TwoLevelPreconditioner<Dim>::node_reach, [&](int near, const Vector<Dim>&) {
       const int user = owner[static_cast<std::size_t>(near)];
       if (std::find(users.begin(), users.end(), user) != users.end()) return;
       users.push_back(user);
@@ -78,9 +79,9 @@ void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, P
 
 template <int Dim>
 Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
-  const auto geometry = make_geometry<Dim>(config);
-  const CellGrid<Dim> cells(geometry->bounds(), geometry->edges(), cell_reach(config));
-  const CellCounts counts = count_particles<Dim>(comm, cells, *geometry);
+  const Scene<Dim> scene = make_scene<Dim>(config, config);
+  const CellGrid<Dim> cells(scene.bounds, scene.periodic, least_cell_edge(config));
+  const CellCounts counts = count_particles<Dim>(comm, cells, scene);
   // One process partitions: PTScotch waits for ever where three are to make more than three parts.
   std::vector<int> owner(counts.work.size());
   if (rank_of(comm) == 0)
@@ -101,7 +102,7 @@ Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
   count_halo<Dim>(cells, owner, counts, plan);
   count_node_copies<Dim>(cells, owner, plan);
 
-  const UnitCosts costs = Simulation<Dim>::unit_costs(config);
+  const UnitCosts costs = unit_costs<Dim>(config);
   for (RankPlan& rank : plan.ranks) {
     rank.field_bytes = static_cast<double>(rank.received) * sizeof(double);
     rank.step_bytes = static_cast<double>(rank.received) * costs.halo_traffic;

@@ -14,8 +14,8 @@
 
 #include "impinge/io/output.hpp"
 #include "impinge/io/snapshot.hpp"
-#include "impinge/method/simulation.hpp"
 #include "impinge/parallel/exchange.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
 #include "impinge/programs/stop_signals.hpp"
@@ -51,7 +51,7 @@ void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) 
 
 template <int Dim>
 void check(MPI_Comm comm, const Case& config) {
-  const Simulation<Dim> simulation(comm, config);
+  const auto simulation = make_simulation<Dim>(comm, config);
   refuse_unused_options(comm, simulation.pressure_solver().default_options());
   const StepReport& report = simulation.report();
   std::array<std::int64_t, 4> counts{};
@@ -224,7 +224,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
   Output output(comm, config);
   if (first && output.removed() > 0)
     fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
-  Simulation<Dim> simulation(comm, config);
+  auto simulation = make_simulation<Dim>(comm, config);
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
@@ -235,7 +235,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
 template <int Dim>
 std::shared_ptr<Simulation<Dim>> restored(MPI_Comm comm, const Case& config, const std::string& path) {
   const Checkpoint<Dim> checkpoint = read_checkpoint<Dim>(comm, path);
-  return std::make_shared<Simulation<Dim>>(comm, config, &checkpoint);
+  return std::shared_ptr<Simulation<Dim>>(new Simulation<Dim>(make_simulation<Dim>(comm, config, &checkpoint)));
 }
 
 template <int Dim>

@@ -41,21 +41,24 @@ class Block {
     assemble();
     two_level.set_owners(domain.owners());
     update();
-    check(MatCreateVecs(solver.matrix(), x.address(), y.address()));
-    check(VecSet(x, 1.0));
-    check(PCCreate(MPI_COMM_SELF, &preconditioner));
-    check(PCSetType(preconditioner, PCSHELL));
-    check(PCSetOperators(preconditioner, solver.matrix(), solver.matrix()));
+    petsc_check(MatCreateVecs(solver.matrix(), x.address(), y.address()));
+    petsc_check(VecSet(x, 1.0));
+    petsc_check(PCCreate(MPI_COMM_SELF, &preconditioner));
+    petsc_check(PCSetType(preconditioner, PCSHELL));
+    petsc_check(PCSetOperators(preconditioner, solver.matrix(), solver.matrix()));
     two_level.attach(preconditioner);
   }
   ~Block() { PCDestroy(&preconditioner); }
 
   void assemble() {
-    solver.assemble({.for_rows = [&](const auto& use) { search.for_far_rows(use); },
+    solver.assemble({.for_rows =
+                         [&](const auto& use) {
+                           search.for_far_rows([&](int i, const PairRow& row) { use(i, {row, 0.0}); });
+                         },
                      .role = role,
                      .row = domain.rows(),
                      .source = source,
-                     .factor = 2.0 * Dim / (far_sums.number_density * far_sums.lambda),
+                     .laplacian_factor = 2.0 * Dim / (far_sums.number_density * far_sums.lambda),
                      .n0 = far_sums.number_density,
                      .usual_pairs = far_sums.neighbours},
                     domain.halo());
@@ -137,8 +140,8 @@ void add_loops(Block<Dim>& block) {
           pressure_gradient<Dim>(block.search.near(), block.particles.position, block.particles.pressure,
                                  block.particles.type, no_wall, block.near_sums.number_density, i);
   });
-  add_loop("product", [&block] { check(MatMult(block.solver.matrix(), block.x, block.y)); });
-  add_loop("two_level_apply", [&block] { check(PCApply(block.preconditioner, block.x, block.y)); });
+  add_loop("product", [&block] { petsc_check(MatMult(block.solver.matrix(), block.x, block.y)); });
+  add_loop("two_level_apply", [&block] { petsc_check(PCApply(block.preconditioner, block.x, block.y)); });
   add_loop("two_level_set_up", [&block] {
     block.two_level.expire();
     block.update();

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "impinge/method/simulation.hpp"
 #include "impinge/programs/command_line.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "impinge/programs/run.hpp"
 
 namespace impinge {
@@ -21,7 +21,7 @@ namespace {
 
 int option(const char* name, int otherwise) {
   PetscInt value = otherwise;
-  check(PetscOptionsGetInt(nullptr, nullptr, name, &value, nullptr));
+  petsc_check(PetscOptionsGetInt(nullptr, nullptr, name, &value, nullptr));
   return static_cast<int>(value);
 }
 
@@ -53,17 +53,17 @@ double triad_bandwidth(MPI_Comm comm) {
 /// Seconds of a product with the matrix.
 double product_seconds(MPI_Comm comm, Mat matrix) {
   PetscVector x, y;
-  check(MatCreateVecs(matrix, x.address(), y.address()));
-  check(VecSet(x, 1.0));
-  return median_seconds(comm, 51, [&] { check(MatMult(matrix, x, y)); });
+  petsc_check(MatCreateVecs(matrix, x.address(), y.address()));
+  petsc_check(VecSet(x, 1.0));
+  return median_seconds(comm, 51, [&] { petsc_check(MatMult(matrix, x, y)); });
 }
 
 /// Bytes that a product must move: values and columns, row starts, and both vectors once.
 double product_bytes(Mat matrix) {
   MatInfo info;
   PetscInt rows = 0;
-  check(MatGetInfo(matrix, MAT_GLOBAL_SUM, &info));
-  check(MatGetSize(matrix, &rows, nullptr));
+  petsc_check(MatGetInfo(matrix, MAT_GLOBAL_SUM, &info));
+  petsc_check(MatGetSize(matrix, &rows, nullptr));
   return info.nz_used * (sizeof(double) + sizeof(PetscInt)) +
          static_cast<double>(rows) * (2 * sizeof(double) + sizeof(PetscInt));
 }
@@ -83,14 +83,14 @@ using Count = std::array<double, 4>;
 
 Count phase_count(const char* name) {
   PetscLogStage stage = -1;
-  check(PetscLogStageGetId(name, &stage));
+  petsc_check(PetscLogStageGetId(name, &stage));
 #if PETSC_VERSION_LT(3, 20, 0)
   PetscStageLog log = nullptr;
-  check(PetscLogGetStageLog(&log));
+  petsc_check(PetscLogGetStageLog(&log));
   const PetscEventPerfInfo info = log->stageInfo[stage].perfInfo;
 #else
   PetscEventPerfInfo info;
-  check(PetscLogStageGetPerfInfo(stage, &info));
+  petsc_check(PetscLogStageGetPerfInfo(stage, &info));
 #endif
   return {info.time, info.numMessages, info.messageLength, info.numReductions};
 }
@@ -106,11 +106,11 @@ nlohmann::ordered_json measure(MPI_Comm comm, const Case& config) {
   const int warm_up = option("-bench_warm_up", 10);
   const int steps = option("-bench_steps", 30);
   PetscBool cold = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, "-bench_cold", &cold));
-  check(PetscLogDefaultBegin());
+  petsc_check(PetscOptionsHasName(nullptr, nullptr, "-bench_cold", &cold));
+  petsc_check(PetscLogDefaultBegin());
 
   const double bytes_before = sum_over_ranks(comm, process_bytes("VmRSS"));
-  Simulation<Dim> simulation(comm, config);
+  auto simulation = make_simulation<Dim>(comm, config);
   for (int k = 0; k < warm_up; ++k) simulation.step();
 
   auto counts = phase_counts();
@@ -147,7 +147,7 @@ nlohmann::ordered_json measure(MPI_Comm comm, const Case& config) {
   };
 
   // The unit of cost is a product with the whole matrix, whatever half of it the solver stores.
-  const PetscMatrix matrix = simulation.pressure_solver().whole_matrix(simulation.domain().rows());
+  const PetscMatrix matrix = simulation.pressure_solver().whole_matrix(simulation.decomposition().rows());
   const double product = product_seconds(comm, matrix);
   const double solver_product = product_seconds(comm, simulation.pressure_solver().matrix());
   const double bandwidth = triad_bandwidth(comm);
@@ -176,7 +176,8 @@ nlohmann::ordered_json measure(MPI_Comm comm, const Case& config) {
       {"messages_per_rank_step", 0.5 * total[1]},
       {"kb_per_rank_step", 1e-3 * 0.5 * total[2]},
       {"reductions_per_step", total[3]},
-      {"halo_over_owned", sum_over_ranks(comm, static_cast<double>(simulation.particles().size())) / particles - 1.0},
+      {"halo_over_owned",
+       sum_over_ranks(comm, static_cast<double>(simulation.decomposition().rows().size())) / particles - 1.0},
   };
 }
 

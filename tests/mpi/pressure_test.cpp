@@ -71,7 +71,7 @@ Problem cloud(const std::function<PressureRole(const Vector<2>&)>& role_at, Edge
 /// p = 0 above y = 12, a block that is not there, unknowns elsewhere.
 PressureRole basin(const Vector<2>& at) {
   if (at[1] > 12.0) return PressureRole::zero;
-  if (at[0] > 5.0 && at[0] < 9.0 && at[1] > 5.0 && at[1] < 8.0) return PressureRole::excluded;
+  if (at[0] > 5.0 && at[0] < 9.0 && at[1] > 5.0 && at[1] < 8.0) return PressureRole::absent;
   return PressureRole::unknown;
 }
 
@@ -80,23 +80,21 @@ PressureRole all_unknown(const Vector<2>&) { return PressureRole::unknown; }
 /// A problem on the ranks of a communicator.
 class Distributed {
  public:
-  static Edges<2> edges_of(const Problem& problem) {
-    return {{{problem.edge, problem.edge}, {problem.edge, problem.edge}}};
-  }
-
   Distributed(MPI_Comm comm, const Problem& problem, double tolerance = 1e-12)
       : comm_(comm),
         n_(problem.count()),
-        decomposition_(comm, {{}, problem.size}, edges_of(problem), radius, Partitioner::metis),
+        decomposition_(comm, {{}, problem.size}, periodic_axes<2>(problem.edge), radius, Partitioner::metis),
         search_(decomposition_.sorting_cells(), Decomposition<2>::cell_parts, KernelType::non_singular, 2.1, radius),
+        walls_(mirrors_of<2>(problem.edge, {{}, problem.size}, radius)),
         solver_(comm, tolerance) {
     for_share(static_cast<std::int64_t>(n_), rank_of(comm), ranks_of(comm),
               [&](std::int64_t k) { particles_.append(problem.particles.record(static_cast<int>(k))); });
     decomposition_.partition(particles_);
     EXPECT_EQ(decomposition_.migrate(particles_), 0);
     decomposition_.build_halo(particles_);
-    search_.search(particles_);
     for (const auto id : particles_.id) role_.push_back(problem.role[static_cast<std::size_t>(id)]);
+    walls_.append_images(particles_);
+    search_.search(particles_);
     assemble(problem.source);
   }
 
@@ -105,20 +103,25 @@ class Distributed {
     source_.clear();
     for (int i = 0; i < particles_.owned; ++i)
       source_.push_back(source[static_cast<std::size_t>(particles_.id[static_cast<std::size_t>(i)])]);
-    solver_.assemble({.for_rows = [&](const auto& use) { search_.for_far_rows(use); },
+    solver_.assemble({.for_rows =
+                          [&](const auto& use) {
+                            search_.for_far_rows([&](int i, const PairRow& row) { use(i, {row, 0.0}); });
+                          },
                       .role = role_,
                       .row = decomposition_.rows(),
                       .source = source_,
-                      .factor = factor,
+                      .laplacian_factor = factor,
                       .n0 = n0,
-                      .usual_pairs = 48},
+                      .usual_pairs = 48,
+                      .original = walls_.originals()},
                      decomposition_.halo());
     if (!solver_.is_two_level()) return;
     if (!two_level_) {
       two_level_.emplace(comm_, decomposition_.cells());
       two_level_->set_owners(decomposition_.owners());
     }
-    two_level_->update(solver_.rows(), role_, particles_.position, decomposition_.halo(), 0);
+    two_level_->update(solver_.rows(), role_, std::span<const Vector<2>>(particles_.position).first(role_.size()),
+                       decomposition_.halo(), 0);
     two_level_->attach(solver_.preconditioner());
   }
 
@@ -180,6 +183,7 @@ class Distributed {
   std::size_t n_;
   Decomposition<2> decomposition_;
   NeighbourSearch<2> search_;
+  MirrorWalls<2> walls_;
   PressureSolver solver_;
   std::optional<TwoLevelPreconditioner<2>> two_level_;
   Particles<2> particles_;
@@ -191,7 +195,7 @@ class Distributed {
 double laplacian(const Problem& problem, const std::vector<double>& pressure, std::size_t i) {
   double sum = 0.0;
   for (std::size_t j = 0; j < problem.count(); ++j)
-    if (j != i && problem.role[j] != PressureRole::excluded) sum += (pressure[j] - pressure[i]) * problem.weight(i, j);
+    if (j != i && problem.role[j] != PressureRole::absent) sum += (pressure[j] - pressure[i]) * problem.weight(i, j);
   return factor * sum;
 }
 
@@ -245,7 +249,7 @@ TEST(PressureMatrix, IsThatOfBruteForce) {
     for (std::size_t i = 0; i < n; ++i) {
       double diagonal = 0.0;
       for (std::size_t j = 0; j < n; ++j) {
-        if (j == i || problem.role[j] == PressureRole::excluded) continue;
+        if (j == i || problem.role[j] == PressureRole::absent) continue;
         diagonal += problem.weight(i, j);
         const bool coupled = problem.role[i] == PressureRole::unknown && problem.role[j] == PressureRole::unknown;
         EXPECT_NEAR(matrix[i * n + j], coupled ? -problem.weight(i, j) : 0.0, edge == Edge::open ? 1e-14 : 1e-12);
@@ -361,7 +365,7 @@ TEST(Pressure, OfSeveralClustersAndSingleParticlesIsFixedInEach) {
   const std::size_t single = problem.count();
   problem.add({{44.0, 8.0}}, PressureRole::unknown, 7.0);
   problem.add({{54.0, 8.0}}, PressureRole::unknown, -7.0);
-  problem.add({{54.0, 9.0}}, PressureRole::excluded, 1.0);  // no neighbour to speak of
+  problem.add({{54.0, 9.0}}, PressureRole::absent, 1.0);  // no neighbour to speak of
   Distributed system(MPI_COMM_WORLD, problem);
   const PressureReport report = system.solve();
   EXPECT_EQ(report.failure, "");
@@ -386,7 +390,7 @@ TEST(Pressure, OfABoxWithoutFreeSurfaceIsFixedByItsLowestValue) {
 // A C of unknowns, spread over the ranks: a pocket until the tip of one arm gets p = 0.
 TEST(Pressure, FindsWindingPockets) {
   const auto snake = [](const Vector<2>& at) {
-    if (at[1] > 4.5 && at[1] < 9.5 && at[0] > 5.0) return PressureRole::excluded;
+    if (at[1] > 4.5 && at[1] < 9.5 && at[0] > 5.0) return PressureRole::absent;
     return PressureRole::unknown;
   };
   const Problem closed = cloud(snake);
@@ -417,7 +421,7 @@ TEST(Pressure, NeedsNoRowsOnEveryRank) {
 
 TEST(Pressure, WithoutUnknownsIsZero) {
   const Problem problem =
-      cloud([](const Vector<2>& at) { return at[0] < 9.0 ? PressureRole::zero : PressureRole::excluded; });
+      cloud([](const Vector<2>& at) { return at[0] < 9.0 ? PressureRole::zero : PressureRole::absent; });
   Distributed system(MPI_COMM_WORLD, problem);
   EXPECT_EQ(system.solve().failure, "");
   EXPECT_EQ(largest(system.pressure()), 0.0);

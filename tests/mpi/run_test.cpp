@@ -8,7 +8,7 @@
 #include <set>
 
 #include "gather.hpp"
-#include "impinge/method/simulation.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -47,7 +47,8 @@ struct State {
 template <int Dim>
 void expect_the_same_run(const Case& config, int steps) {
   const double spacing = config.particles.spacing;
-  Simulation<Dim> here(MPI_COMM_WORLD, config), alone(MPI_COMM_SELF, config);
+  auto here = make_simulation<Dim>(MPI_COMM_WORLD, config);
+  auto alone = make_simulation<Dim>(MPI_COMM_SELF, config);
   {
     const State<Dim> shared(MPI_COMM_WORLD, here.particles()), single(MPI_COMM_SELF, alone.particles());
     EXPECT_EQ(shared.position, single.position);
@@ -109,7 +110,7 @@ TEST(Run, IsThatOfASingleRankWithTheSingularKernel) {
 TEST(Run, IsThatOfASingleRankWhereItIsRepartitioned) {
   const Case config = jet_case({"parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"});
   // That it happens: wall particles do not move, so only a new partition changes their owners.
-  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
   const auto own_walls = [&] {
     std::set<std::int64_t> ids;
     const auto& particles = simulation.particles();
@@ -129,7 +130,7 @@ TEST(Run, ShearWaveIsThatOfASingleRank) { expect_the_same_run<2>(shipped_case("s
 // Particles enter and leave; nothing is lost on the way.
 TEST(Run, BalancesParticlesAtTheInletAndTheOutlets) {
   const Case config = jet_case({"plate.begin=-0.4", "plate.end=0.6", "pressure.tolerance=1e-6"});
-  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
   const std::int64_t at_start = simulation.report().in;
   EXPECT_EQ(simulation.report().fluid, at_start);
   while (simulation.report().time < 0.8) {
@@ -143,7 +144,7 @@ TEST(Run, BalancesParticlesAtTheInletAndTheOutlets) {
 }
 
 TEST(Run, StepIsBoundedByTheCourantNumberAndGrowsSlowly) {
-  Simulation<2> simulation(MPI_COMM_WORLD, jet_case({"time.dt=1e-2", "time.cfl=0.1"}));
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, jet_case({"time.dt=1e-2", "time.cfl=0.1"}));
   const StepReport& report = simulation.report();
   simulation.step();
   EXPECT_EQ(report.limit, StepLimit::growth);
@@ -155,7 +156,7 @@ TEST(Run, StepIsBoundedByTheCourantNumberAndGrowsSlowly) {
     EXPECT_NEAR(report.dt, std::min(largest, 1.1 * last), 1e-12);
   }
   EXPECT_EQ(report.limit, StepLimit::cfl);
-  Simulation<2> slow(MPI_COMM_WORLD, jet_case({"time.dt=1e-3"}));
+  auto slow = make_simulation<2>(MPI_COMM_WORLD, jet_case({"time.dt=1e-3"}));
   slow.step();
   EXPECT_EQ(slow.report().limit, StepLimit::case_dt);
   EXPECT_EQ(slow.report().dt, 1e-3);
@@ -163,18 +164,18 @@ TEST(Run, StepIsBoundedByTheCourantNumberAndGrowsSlowly) {
 
 /// The failure of a run, on every rank.
 SolveError failure_of(const Case& config) {
-  Simulation<2> simulation(MPI_COMM_WORLD, config);
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
   try {
     for (int step = 0; step < 50; ++step) simulation.step();
   } catch (const SolveError& error) {
     return error;
   }
-  return {-1, "none", "no failure"};
+  return {-1, Phase::totals, "no failure"};
 }
 
 TEST(Run, EndsWhereTheSpeedPassesItsBound) {
   const SolveError error = failure_of(jet_case({"time.max_speed=1.2"}));
-  EXPECT_EQ(error.phase(), "correct");
+  EXPECT_EQ(error.phase(), Phase::correct);
   EXPECT_GT(error.step(), 0);
   EXPECT_NE(std::string(error.what()).find("time.max_speed"), std::string::npos) << error.what();
 }
@@ -183,7 +184,7 @@ TEST(Run, EndsWhereThePressureDoesNotConverge) {
   petsc_check(PetscOptionsSetValue(nullptr, "-ppe_ksp_max_it", "1"));
   const SolveError error = failure_of(jet_case());
   petsc_check(PetscOptionsClearValue(nullptr, "-ppe_ksp_max_it"));
-  EXPECT_EQ(error.phase(), "pressure");
+  EXPECT_EQ(error.phase(), Phase::solve);
   EXPECT_NE(std::string(error.what()).find("DIVERGED_ITS"), std::string::npos) << error.what();
 }
 
@@ -210,14 +211,14 @@ class FlakyPreconditioner {
 
 TEST(Run, RepeatsAFailedSolveFromZeroThenTheStepWithHalfItsDt) {
   const FlakyPreconditioner flaky;
-  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, jet_case());
   for (int step = 0; step < 12; ++step) simulation.step();
   EXPECT_EQ(simulation.report().cold_solves, 0);
   EXPECT_EQ(simulation.report().halvings, 0);
   Checkpoint<2> before = simulation.checkpoint();
 
   for (const int failures : {1, 2, 5, 9}) {
-    Simulation<2> retried(MPI_COMM_WORLD, jet_case(), &before);
+    auto retried = make_simulation<2>(MPI_COMM_WORLD, jet_case(), &before);
     failures_to_come = failures;
     retried.step();
     const int halvings = failures / 2;
@@ -229,7 +230,8 @@ TEST(Run, RepeatsAFailedSolveFromZeroThenTheStepWithHalfItsDt) {
     if (failures % 2 == 0) {  // the step that succeeded was not cold: it is one that had this dt from the start
       Checkpoint<2> fresh = before;
       fresh.numbers["coarse_age"] = 0.0;
-      Simulation<2> small(MPI_COMM_WORLD, jet_case({fmt::format("time.dt={}", retried.report().dt)}), &fresh);
+      auto small =
+          make_simulation<2>(MPI_COMM_WORLD, jet_case({fmt::format("time.dt={}", retried.report().dt)}), &fresh);
       small.step();
       EXPECT_EQ(small.particles().position, retried.particles().position);
       EXPECT_EQ(small.particles().velocity, retried.particles().velocity);
@@ -250,11 +252,11 @@ TEST(Run, RepeatsAFailedSolveFromZeroThenTheStepWithHalfItsDt) {
 
 // A coarse matrix that turned bad: the fresh one of the second solve is good.
 TEST(Run, OutlivesABadCoarseMatrix) {
-  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, jet_case());
   for (int step = 0; step < 12; ++step) simulation.step();
   Checkpoint<2> state = simulation.checkpoint();
   for (double& value : state.coarse.value) value = -value;
-  Simulation<2> retried(MPI_COMM_WORLD, jet_case(), &state);
+  auto retried = make_simulation<2>(MPI_COMM_WORLD, jet_case(), &state);
   simulation.step();
   retried.step();
   EXPECT_EQ(retried.report().cold_solves, 1);
@@ -265,14 +267,14 @@ TEST(Run, OutlivesABadCoarseMatrix) {
 /// How the step ends after `spoil` changed a fluid particle of some rank, and how many particles are lost.
 template <class Spoil>
 std::pair<std::string, std::int64_t> end_of_step_after(Spoil&& spoil) {
-  Simulation<2> simulation(MPI_COMM_WORLD, jet_case());
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, jet_case());
   simulation.step();
   Checkpoint<2> state = simulation.checkpoint();
   auto& type = state.particles.type;
   const auto fluid = static_cast<std::size_t>(std::find(type.begin(), type.end(), ParticleType::fluid) - type.begin());
   const int self = rank_of(MPI_COMM_WORLD);
   if (max_over_ranks(MPI_COMM_WORLD, fluid < type.size() ? self : -1) == self) spoil(state.particles, fluid);
-  Simulation<2> spoilt(MPI_COMM_WORLD, jet_case(), &state);
+  auto spoilt = make_simulation<2>(MPI_COMM_WORLD, jet_case(), &state);
   try {
     spoilt.step();
   } catch (const SolveError& error) {
@@ -290,7 +292,7 @@ TEST(Run, EndsInTheStepWhereAVelocityIsNotANumber) {
 
 TEST(Run, CountsAParticleThatIsLost) {
   const auto [end, lost] = end_of_step_after([](auto& particles, std::size_t i) { particles.position[i][1] = -1e9; });
-  EXPECT_EQ(end, "step 2, phase redistribute: 1 particle(s) left the domain other than by an outlet");
+  EXPECT_EQ(end, "step 2, phase Redistribute: 1 particle(s) left the domain other than by an outlet");
   EXPECT_EQ(lost, 1);
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -34,7 +34,7 @@ TEST_P(Hydrostatic, ColumnStaysAtRestUnderItsWeight) {
   std::vector<double> floor;
   double averaged = 0.0, largest_speed = 0.0, largest_speed_later = 0.0, highest = 0.0, worst_floor = 0.0;
   int averaged_steps = 0;
-  Simulation<2> simulation(comm, config);
+  auto simulation = make_simulation<2>(comm, config);
   while (simulation.report().time < config.time.end - 1e-9) {
     simulation.step();
     const StepReport& report = simulation.report();
@@ -108,7 +108,7 @@ TEST(FreeFall, IsAParabolaWithTheMeanVelocity) {
   for (const bool mean : {true, false}) {
     const Case config =
         shipped_case("hydrostatic.toml", {"fluid.gravity=[0, 9.81]", fmt::format("time.mean_velocity={}", mean)});
-    Simulation<2> simulation(comm, config);
+    auto simulation = make_simulation<2>(comm, config);
     double late = 0.0;  // of the place, where the whole new velocity moves it
     for (int n = 0; n < 30; ++n) {
       simulation.step();

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
 #include "shipped_case.hpp"
 
@@ -39,11 +39,11 @@ INSTANTIATE_TEST_SUITE_P(All, Jet,
 TEST_P(Jet, HoldsItsSteadyStateAtLowResolution) {
   const Bounds bounds = GetParam();
   const Case config = shipped_case("jet.toml", {fmt::format("scheme={}", bounds.scheme), "particles.spacing=0.04",
-                                                  "time.dt=1.6e-3", "jet.start=\"steady\""});
+                                                "time.dt=1.6e-3", "jet.start=\"steady\""});
   const double width = config.jet.width;
   const AnalyticJet analytic(width, config.jet.speed, config.fluid.density,
                              config.jet.angle * std::numbers::pi / 180.0);
-  Simulation<2> simulation(comm, config);
+  auto simulation = make_simulation<2>(comm, config);
   const std::int64_t at_start = simulation.report().fluid;
   const double energy_at_start = simulation.report().kinetic_energy;
   double impulse = 0.0, span = 0.0, largest_speed = 0.0, film = 0.0;

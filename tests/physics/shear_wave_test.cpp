@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShearWave, testing::Values("consistent", "paper"),
 
 TEST_P(ShearWave, DecaysAtTheAnalyticRate) {
   const Case config = shipped_case("shear-wave.toml", {"scheme=" + GetParam()});
-  Simulation<2> simulation(comm, config);
+  auto simulation = make_simulation<2>(comm, config);
   while (simulation.report().time < config.time.end - 1e-9) simulation.step();
 
   const double k = 2.0 * std::numbers::pi / config.periodic_box.size[1];

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/programs/make_simulation.hpp"
 #include "mpi/gather.hpp"
 #include "shipped_case.hpp"
 
@@ -19,7 +19,7 @@ double distance_after_steps(const std::string& least_distance) {
   const double dp = config.particles.spacing;
   const Vector<2> left{{0.5 * config.tank.size[0] - 0.5 * dp, config.tank.fluid_height - 0.5 * dp}};
   const Vector<2> right{{left[0] + dp, left[1]}};
-  Checkpoint<2> start = Simulation<2>(comm, config).checkpoint();
+  Checkpoint<2> start = make_simulation<2>(comm, config).checkpoint();
   std::int64_t first = -1, second = -1;
   for (const auto& [id, position] : gather_by_id(comm, start.particles, start.particles.position)) {
     if (norm(position - left) < 1e-6 * dp) first = id;
@@ -32,7 +32,7 @@ double distance_after_steps(const std::string& least_distance) {
     start.searched_position[i] = start.particles.position[i];
   }
 
-  Simulation<2> simulation(comm, config, &start);
+  auto simulation = make_simulation<2>(comm, config, &start);
   for (int n = 0; n < 10; ++n) simulation.step();
   const auto places = gather_by_id(comm, simulation.particles(), simulation.particles().position);
   return norm(places.at(second) - places.at(first)) / dp;

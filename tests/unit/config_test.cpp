@@ -1,7 +1,5 @@
 // Case files: every kind of mistake with its message, the order of precedence, the resolved text, the shipped cases.
 
-#include "impinge/programs/case.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,6 +9,7 @@
 #include <sstream>
 
 #include "impinge/core/errors.hpp"
+#include "impinge/programs/case.hpp"
 
 namespace impinge {
 namespace {

@@ -59,21 +59,5 @@ TYPED_TEST(Types, AProductOfVectorsMapsAlongTheFirst) {
   EXPECT_NEAR(norm(sum * v - (m * v + dot(b, v) * a)), 0.0, 1e-15);
 }
 
-TYPED_TEST(Types, AnImageIsReflectedThenShifted) {
-  const auto r = this->vector();
-  Image<TestFixture::Dim> image;
-  EXPECT_FALSE(image.reflects());
-  EXPECT_EQ(image.of_position(r), r);
-  image.shift[0] = 3.0;
-  EXPECT_FALSE(image.reflects());
-  EXPECT_EQ(image.of_position(r)[0], r[0] + 3.0);
-  EXPECT_EQ(image.of_direction(r), r);
-  image.sign[0] = -1.0;
-  EXPECT_TRUE(image.reflects());
-  EXPECT_EQ(image.of_position(r)[0], 3.0 - r[0]);
-  EXPECT_EQ(image.of_direction(r)[0], -r[0]);
-  EXPECT_EQ(image.of_position(r)[1], r[1]);
-}
-
 }  // namespace
 }  // namespace impinge

@@ -8,6 +8,7 @@
 
 #include "impinge/io/snapshot.hpp"
 #include "impinge/method/simulation.hpp"
+#include "impinge/programs/case.hpp"
 
 namespace impinge {
 

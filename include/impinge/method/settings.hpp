@@ -85,4 +85,9 @@ struct MethodSettings {
   double average_start = 0.0;  ///< start of the wall-pressure average [s]; key output.average_start
 };
 
+/// Least edge of a run's background cells [m]: the Laplacian's radius.
+inline double least_cell_edge(const MethodSettings& settings) {
+  return settings.kernel.laplacian_radius * settings.particles.spacing;
+}
+
 }  // namespace impinge

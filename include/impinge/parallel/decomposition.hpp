@@ -22,11 +22,11 @@ template <int Dim>
 std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std::span<const int> work, int parts,
                                   Partitioner partitioner);
 
-/// A rank that has a cell's particles in its halo, as they are or as periodic or mirror images.
+/// A rank that has a cell's particles in its halo, as they are or moved by periods.
 template <int Dim>
 struct HaloTarget {
   int rank;
-  Image<Dim> image;
+  Vector<Dim> shift;  ///< [m]
   friend bool operator==(const HaloTarget&, const HaloTarget&) = default;
 };
 
@@ -50,7 +50,8 @@ class Decomposition {
   };
 
   /// `reach`: largest effective radius [m]. Every rank starts with no cell; call partition before migrate. Collective.
-  Decomposition(MPI_Comm comm, const Box<Dim>& box, const Edges<Dim>& edges, double reach, Partitioner partitioner);
+  Decomposition(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
+                Partitioner partitioner);
 
   MPI_Comm comm() const { return comm_; }
 
@@ -91,12 +92,8 @@ class Decomposition {
 
   const Halo& halo() const { return halo_; }
 
-  /// Copies the positions of owned particles to their copies in the halo, images moved. Collective.
+  /// Copies the positions of owned particles to their copies in the halo, moved by periods. Collective.
   void refresh_positions(Particles<Dim>& particles) const;
-
-  /// Copies directions (velocities, normals) of owned particles to their copies in the halo, mirror images reflected.
-  /// Collective.
-  void refresh_directions(std::vector<Vector<Dim>>& directions, int owned) const;
 
   /// Global row of every particle, owned and halo: consecutive on each rank, in the order of the ranks.
   std::span<const PetscInt> rows() const { return rows_; }
@@ -115,7 +112,7 @@ class Decomposition {
   double achieved_imbalance_ = 1.0;
   int partitions_ = 0;
   Halo halo_;
-  std::vector<Image<Dim>> halo_image_;  // per particle sent
+  std::vector<Vector<Dim>> halo_shift_;  // per particle sent [m]
   std::vector<PetscInt> rows_;
 };
 

@@ -41,10 +41,9 @@ template <int Dim>
 class NeighbourSearch {
  public:
   /// Radii in metres, near_radius <= far_radius; `cells`: the cells along which the particles are sorted, with
-  /// far_radius <= reach cells. `mirrored`: walls are mirrors; a wall particle then measures only: it has a near row
-  /// and stands in no other row.
+  /// far_radius <= reach cells. `walls_measure`: a wall particle has a near row but stands in no other row.
   NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius, double far_radius,
-                  bool mirrored = false);
+                  bool walls_measure = false);
 
   /// Reads positions and types of owned particles (sorted) and halo. Inlet particles and ghosts get empty rows. Not
   /// collective.
@@ -53,14 +52,14 @@ class NeighbourSearch {
   const PairList& near() const { return near_; }
 
   /// Calls use(i, row) for every owned particle in their order, with its pairs within the far radius at the last search
-  /// and the particle itself in its place, with weight 0. Rows of inlet particles, ghosts, and walls on mirrors are
+  /// and the particle itself in its place, with weight 0. Rows of inlet particles, ghosts, and walls that measure are
   /// empty. A row is valid during the call. Not collective.
   template <class Use>
   void for_far_rows(Use&& use) {
     for (int i = 0; i < near_.rows(); ++i) use(i, far_row(i));
   }
 
-  /// Where an owned particle, no wall particle on a mirror, stood at the last search [m].
+  /// Where an owned particle, no wall particle that measures, stood at the last search [m].
   Vector<Dim> searched_position(int i) const;
 
   /// Memory that the list and the search hold [bytes].
@@ -78,7 +77,7 @@ class NeighbourSearch {
   KernelType kernel_;
   double near_radius_;
   double far_radius_;
-  bool mirrored_;
+  bool walls_measure_;
   PairList near_;
   // Particles in the order of the local cells: a box of cells around all of them, padded by the reach.
   std::array<int, Dim> box_low_;

@@ -44,7 +44,7 @@ void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Sw
   }
 }
 
-constexpr double crowding = 1.3;  // most pairs of the particles on average, over those of the full lattice
+constexpr double reserve = 1.3;  // most pairs of the particles on average, over those of the full lattice
 
 }  // namespace
 
@@ -98,14 +98,14 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   const auto own_rows = static_cast<PetscInt>(owned);
   first_row_ = 0;
   MPI_Exscan(&own_rows, &first_row_, 1, MPIU_INT, MPI_SUM, comm_);
-  const double usual_entries = crowding * static_cast<double>(owned) * (0.5 * equation.usual_pairs + 1.0);
+  const double usual_entries = reserve * static_cast<double>(owned) * (0.5 * equation.usual_pairs + 1.0);
   rows_.own.clear(owned, static_cast<std::size_t>(usual_entries));
   rows_.others.clear(owned, 0);
   rows_.diagonal.assign(owned, equation.n0);
   rows_.coupling.assign(owned, 0.0);
   right_hand_side_.assign(owned, 0.0);
   anchored_.assign(equation.role.size(), 0);
-  equation.for_rows([&](int i, const PairRow& pairs) { append_row(equation, i, pairs); });
+  equation.for_rows([&](int i, const PressureEquation::Row& row) { append_row(equation, i, row); });
   find_pockets(equation, halo);
   close_pockets(equation);
 
@@ -113,8 +113,9 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   if (!is_two_level_) whole_matrix_ = matrix_.whole_matrix(equation.row);
 }
 
-void PressureSolver::append_row(const PressureEquation& equation, int i, const PairRow& pairs) {
+void PressureSolver::append_row(const PressureEquation& equation, int i, const PressureEquation::Row& row) {
   const auto self = static_cast<std::size_t>(i);
+  const PairRow& pairs = row.pairs;
   MatrixRows::Block& own = rows_.own;
   own.make_room(pairs.index.size() + 1);
   PetscInt* const column = own.column.data();
@@ -129,46 +130,49 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
     anchored_[self] = equation.role[self] == PressureRole::zero;
   } else {
     const int owned = static_cast<int>(equation.source.size());
+    const int first_image = static_cast<int>(equation.role.size());
     double sum = 0.0;
     double zeros = 0.0;  // of the sum
-    double excess = 0.0;
+    double offset = 0.0;
     ++used;  // the diagonal
     for (std::size_t k = 0; k < pairs.index.size(); ++k) {
-      const int j = pairs.index[k];
+      int j = pairs.index[k];
       const double weight = pairs.weight[k];
-      const PressureRole role = equation.role[static_cast<std::size_t>(j)];
       if (j < owned) {
-        sum += role == PressureRole::excluded ? 0.0 : weight;
+        const PressureRole role = equation.role[static_cast<std::size_t>(j)];
+        sum += role == PressureRole::absent ? 0.0 : weight;
         zeros += role == PressureRole::zero ? weight : 0.0;
         column[used] = j;
         value[used] = -weight;
         used += role == PressureRole::unknown && j > i ? 1 : 0;
-      } else if (role != PressureRole::excluded) {
-        if (!equation.excess.empty()) excess += weight * equation.excess[static_cast<std::size_t>(j - owned)];
-        const PetscInt row = equation.row[static_cast<std::size_t>(j)];
-        if (row == equation.row[self]) continue;  // its own mirror image
-        sum += weight;
-        if (role == PressureRole::zero) {
-          zeros += weight;
-          continue;
-        }
-        if (row < first_row_ || row >= first_row_ + owned) {
-          others_.push_back({row, j - owned, -weight});
-        } else if (row > equation.row[self]) {
-          images_.emplace_back(row - first_row_, -weight);
-        }
+        continue;
+      }
+      const auto image = static_cast<std::size_t>(j - first_image);
+      if (j >= first_image) j = equation.original[image];
+      const PressureRole role = equation.role[static_cast<std::size_t>(j)];
+      if (role == PressureRole::absent) continue;
+      if (image < equation.image_offset.size()) offset += weight * equation.image_offset[image];
+      const PetscInt other = equation.row[static_cast<std::size_t>(j)];
+      if (other == equation.row[self]) continue;  // its own image
+      sum += weight;
+      if (role == PressureRole::zero) {
+        zeros += weight;
+        continue;
+      }
+      if (other < first_row_ || other >= first_row_ + owned) {
+        others_.push_back({other, j - owned, -weight});
+      } else if (other > equation.row[self]) {
+        images_.emplace_back(other - first_row_, -weight);
       }
     }
-    if (!equation.surface.empty()) {
-      sum += equation.surface[self];
-      zeros += equation.surface[self];
-    }
+    sum += row.surface_weight;
+    zeros += row.surface_weight;
     if (sum > 0.0) rows_.coupling[self] = (sum - zeros) / sum;
     if (sum == 0.0) sum = equation.n0;
     column[row_begin] = i;
     value[row_begin] = sum;
     rows_.diagonal[self] = sum;
-    right_hand_side_[self] = excess - equation.source[self] / equation.factor;
+    right_hand_side_[self] = offset - equation.source[self] / equation.laplacian_factor;
     anchored_[self] = zeros > 0.0;
   }
 

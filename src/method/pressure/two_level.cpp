@@ -98,7 +98,7 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
   std::vector<PetscSFNode> remote;
   for (std::size_t cell = 0; cell < owner.size(); ++cell) {
     if (owner[cell] != self) continue;
-    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Image<Dim>&) {
+    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Vector<Dim>&) {
       if (node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
       node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
       cell_of_node_.push_back(near);
@@ -120,19 +120,19 @@ void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
 
 template <int Dim>
 int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordinates) const {
-  Image<Dim> image;
-  const int cell = cells_.wrapped_cell(coordinates, image);
+  Vector<Dim> shift;
+  const int cell = cells_.wrapped_cell(coordinates, shift);
   return cell < 0 ? -1 : node_of_cell_[static_cast<std::size_t>(cell)];
 }
 
 template <int Dim>
 std::array<int, Dim> TwoLevelPreconditioner<Dim>::place(const Vector<Dim>& position, Vector<Dim>& inside) const {
   std::array<int, Dim> base;
-  const Vector<Dim> in_edges = cells_.in_edges(cells_.unmirrored(position));
+  const Vector<Dim> in_edges = cells_.in_edges(position);
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     double at = in_edges[k] - 0.5;
-    if (cells_.edges()[axis].low != Edge::periodic) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
+    if (!cells_.periodic()[axis]) at = std::clamp(at, 0.0, cells_.extent()[axis] - 1.0);
     base[axis] = static_cast<int>(std::floor(at));
     inside[k] = at - base[axis];
   }
@@ -248,7 +248,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
         std::array<int, Dim> offset;
         for (std::size_t k = 0; k < Dim; ++k) {
           offset[k] = base[j][k] - patch.base[k] + 1;
-          if (cells_.edges()[k].low != Edge::periodic) continue;
+          if (!cells_.periodic()[k]) continue;
           if (offset[k] > 2) offset[k] -= cells_.extent()[k];
           if (offset[k] < 0) offset[k] += cells_.extent()[k];
         }
@@ -294,9 +294,9 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     columns.clear();
     values.clear();
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
-      Image<Dim> image;
-      const int cell = cells_.wrapped_cell(sum<Dim>(centre, offset), image);
-      if (cell < 0 || image.reflects() || node_of_cell_[static_cast<std::size_t>(cell)] < 0) return;
+      Vector<Dim> shift;
+      const int cell = cells_.wrapped_cell(sum<Dim>(centre, offset), shift);
+      if (cell < 0 || node_of_cell_[static_cast<std::size_t>(cell)] < 0) return;
       const auto other = static_cast<std::size_t>(node_of_cell_[static_cast<std::size_t>(cell)]);
       const auto there = static_cast<std::size_t>(k);
       const double value =

@@ -16,27 +16,33 @@ namespace impinge {
 
 /// What a particle is to the pressure equation.
 enum class PressureRole : std::uint8_t {
-  excluded,  ///< not there: no flux from it
-  zero,      ///< p = 0
+  absent,  ///< no flux from it
+  zero,    ///< p = 0
   unknown
 };
 
-/// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. Views are read
-/// while assemble runs.
+/// lap p = source, with the Laplacian of paper eq. 6 (times Dim), on the owned particles of all ranks. The matrix is
+/// divided by -laplacian_factor: A_ij = -W_ij, A_ii = sum_j W_ij over unknown and p = 0 neighbours, and the surface's
+/// weight; rows without an unknown are n0 p_i = 0. Views are read while assemble runs.
 struct PressureEquation {
-  /// Calls its argument for every owned particle in their order, with the pairs and weights of its Laplacian: columns
-  /// of owned particles ascend, and where it has an unknown, the particle itself stands among them with weight 0.
-  std::function<void(const std::function<void(int, const PairRow&)>&)> for_rows;
+  /// A row: the pairs and weights of its Laplacian, columns of owned particles ascending, and where it has an unknown,
+  /// the particle itself among them with weight 0; and the weight of p = 0 beyond the surface [-].
+  struct Row {
+    PairRow pairs;
+    double surface_weight;
+  };
+  /// Calls its argument for every owned particle in their order.
+  std::function<void(const std::function<void(int, const Row&)>&)> for_rows;
   std::span<const PressureRole> role;  ///< owned and halo
   std::span<const PetscInt> row;       ///< global rows, owned and halo
   std::span<const double> source;      ///< [Pa/m^2], owned
-  double factor;                       ///< 2 Dim/(n0 lambda) [1/m^2]
+  double laplacian_factor;             ///< 2 Dim/(n0 lambda) [1/m^2]
   double n0;                           ///< full lattice's sum of weights [-]
   int usual_pairs;                     ///< full lattice's pairs of a particle
-  /// Weight of p = 0 beyond the surface, owned [-]; or none. The entry of a particle is read after its row was given.
-  std::span<const double> surface{};
-  /// What a halo particle's pressure is above its original's [Pa], halo; or none.
-  std::span<const double> excess{};
+  /// Particles with an index beyond the halo are mirror images: whom each is an image of (owned or halo), and what its
+  /// pressure is above its original's [Pa], or none.
+  std::span<const int> original{};
+  std::span<const double> image_offset{};
 };
 
 struct PressureReport {
@@ -46,11 +52,10 @@ struct PressureReport {
   std::string failure;    ///< empty if the solve converged; the same on every rank
 };
 
-/// Builds the matrix of each step and solves it with a KSP of options prefix `ppe_`. The system is divided by -factor:
-/// A_ij = -W_ij, A_ii = sum_j W_ij over unknown and p = 0 neighbours, and the surface's weight, b_i = -source_i/factor;
-/// rows without an unknown are n0 p_i = 0. Symmetric, and positive definite: in a cluster that touches no p = 0
-/// particle the source's mean is removed, one particle is pinned, and the pressure's lowest value is set to 0. Half of
-/// the matrix is stored, which serves products and the two-level preconditioner; others get an AIJ matrix.
+/// Builds the matrix of each step and solves it with a KSP of options prefix `ppe_`. The matrix is symmetric, and
+/// positive definite: in a cluster that touches no p = 0 particle the source's mean is removed, one particle is pinned,
+/// and the pressure's lowest value is set to 0. Half of the matrix is stored, which serves products and the two-level
+/// preconditioner; others get an AIJ matrix.
 class PressureSolver {
  public:
   /// The default preconditioner, a shell that the owner of this object fills before each solve.
@@ -88,7 +93,7 @@ class PressureSolver {
  private:
   void create_solver();
   void set_default_option(const char* name, const char* value);
-  void append_row(const PressureEquation& equation, int i, const PairRow& pairs);
+  void append_row(const PressureEquation& equation, int i, const PressureEquation::Row& row);
   template <class Test>
   bool any_later(std::size_t i, Test&& test) const;
   bool spread_anchors(std::span<const PressureRole> role);
@@ -105,7 +110,7 @@ class PressureSolver {
     int particle;
     double value;
   };
-  std::vector<std::pair<PetscInt, double>> images_;  // of a row: entries from images of owned particles
+  std::vector<std::pair<PetscInt, double>> images_;  // of a row: entries of images of owned particles
   std::vector<OtherEntry> others_;                   // of a row
   MatrixRows rows_;
   PressureMatrix matrix_;     // uses the arrays of rows_

@@ -1,5 +1,7 @@
 // Where particles are at the start, where they enter and where they leave.
 
+#include "impinge/scenes/scenes.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +14,8 @@
 
 #include "impinge/boundaries/wall.hpp"
 #include "impinge/core/mpi.hpp"
+#include "impinge/particles/cell_grid.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
-#include "impinge/scenes/scene.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -60,9 +62,14 @@ periodic_box = {{size = {}, shear_speed = 0.5}}
 }
 
 template <int Dim>
+Scene<Dim> scene_of(const Case& config) {
+  return make_scene<Dim>(config, config);
+}
+
+template <int Dim>
 Particles<Dim> fill(const Case& config, int ranks = 1) {
   Particles<Dim> particles;
-  for (int rank = 0; rank < ranks; ++rank) make_geometry<Dim>(config)->fill(rank, ranks, particles);
+  for (int rank = 0; rank < ranks; ++rank) scene_of<Dim>(config).fill(rank, ranks, particles);
   return particles;
 }
 
@@ -140,12 +147,12 @@ TEST(Tank, HasFluidInsideOneRowOfWallAndGhostsBehindIt) {
 
 TEST(Tank, FloorIsTheBottomWallRow) {
   for (const char* walls : {"particles", "mirror"}) {
-    const auto geometry = make_geometry<2>(tank_case(2, walls));
+    const auto scene = scene_of<2>(tank_case(2, walls));
     const Particles<2> tank = fill<2>(tank_case(2, walls));
     int floor = 0;
     for (int i = 0; i < tank.owned; ++i) {
       const auto self = static_cast<std::size_t>(i);
-      if (tank.type[self] != ParticleType::wall || !geometry->on_floor(tank.position[self])) continue;
+      if (tank.type[self] != ParticleType::wall || !scene.on_floor(tank.position[self])) continue;
       EXPECT_NEAR(tank.position[self][1], *walls == 'm' ? 0.0 : -0.005, 1e-12);
       ++floor;
     }
@@ -156,15 +163,18 @@ TEST(Tank, FloorIsTheBottomWallRow) {
 template <int Dim>
 void expect_mirrored_tank(const Vector<Dim>& size, int walls) {
   const Case config = tank_case(Dim, "mirror");
-  const auto geometry = make_geometry<Dim>(config);
-  const Box<Dim> bounds = geometry->bounds();
+  const auto scene = scene_of<Dim>(config);
+  const Box<Dim> bounds = scene.bounds;
   EXPECT_EQ(bounds.low, Vector<Dim>{});
   for (int k = 0; k < Dim; ++k) {
-    const AxisEdges edges = geometry->edges()[static_cast<std::size_t>(k)];
     const bool vertical = k == Dim - 1;
-    EXPECT_EQ(edges.low, Edge::mirror);
-    EXPECT_EQ(edges.high, vertical ? Edge::open : Edge::mirror);
     EXPECT_EQ(bounds.high[k], (vertical ? 2.0 : 1.0) * size[k]);
+    for (const double side : {1.0, -1.0}) {
+      const auto is_there = [&](const Face<Dim>& face) {
+        return face.normal[k] == side && face.point[k] == (side > 0.0 ? 0.0 : size[k]);
+      };
+      EXPECT_EQ(std::ranges::count_if(scene.mirrors, is_there), vertical && side < 0.0 ? 0 : 1);
+    }
   }
 
   const Particles<Dim> tank = fill<Dim>(config);
@@ -172,7 +182,7 @@ void expect_mirrored_tank(const Vector<Dim>& size, int walls) {
   EXPECT_EQ(count(tank, ParticleType::ghost), 0);
   EXPECT_EQ(count(tank, ParticleType::wall), walls);
   EXPECT_NEAR(smallest_distance(tank), 0.005, 1e-12);  // between a corner and its neighbours
-  const CellGrid<Dim> cells(bounds, geometry->edges(), 0.0401);
+  const CellGrid<Dim> cells(bounds, scene.periodic, 0.0401);
   for (std::size_t i = 0; i < tank.position.size(); ++i) {
     EXPECT_GE(cells.cell(cells.wrapped(tank.position[i])), 0);
     if (tank.type[i] != ParticleType::wall) continue;
@@ -195,11 +205,11 @@ TEST(Tank, OfMirrorsHasWallParticlesOnTheSurfaceOnly) {
 TEST(Jet, OnAMirrorHasWallParticlesOnTheSurfaceOnly) {
   for (const char* start : {"impact", "steady"}) {
     const Case config = jet_case(60.0, start, "mirror");
-    const auto geometry = make_geometry<2>(config);
-    const Edges<2> edges = geometry->edges();
-    EXPECT_EQ(edges[1].low, Edge::mirror);
-    for (const Edge other : {edges[0].low, edges[0].high, edges[1].high}) EXPECT_EQ(other, Edge::open);
-    EXPECT_EQ(geometry->bounds().low[1], 0.0);
+    const auto scene = scene_of<2>(config);
+    ASSERT_EQ(scene.mirrors.size(), 1U);
+    EXPECT_EQ(scene.mirrors[0].normal, (Vector<2>{{0.0, 1.0}}));
+    EXPECT_EQ(scene.mirrors[0].point[1], 0.0);
+    EXPECT_EQ(scene.bounds.low[1], 0.0);
 
     const Particles<2> jet = fill<2>(config);
     EXPECT_EQ(count(jet, ParticleType::ghost), 0);
@@ -219,14 +229,8 @@ TEST(PeriodicBox, IsFullOfFluidInAShearFlow) {
     EXPECT_EQ(box.velocity[i][1], 0.0);
   }
   EXPECT_EQ(fill<3>(box_case(3)).owned, 20 * 15 * 13);
-  for (const AxisEdges edges : make_geometry<3>(box_case(3))->edges()) {
-    EXPECT_EQ(edges.low, Edge::periodic);
-    EXPECT_EQ(edges.high, Edge::periodic);
-  }
-  for (const AxisEdges edges : make_geometry<2>(tank_case(2))->edges()) {
-    EXPECT_EQ(edges.low, Edge::open);
-    EXPECT_EQ(edges.high, Edge::open);
-  }
+  EXPECT_EQ(scene_of<3>(box_case(3)).periodic, (std::array{true, true, true}));
+  EXPECT_EQ(scene_of<2>(tank_case(2)).periodic, (std::array{false, false}));
 }
 
 TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
@@ -244,7 +248,7 @@ TEST(Geometry, SharesMakeTheWholeForAnyNumberOfRanks) {
 TEST(Geometry, ParticlesStartInsideTheBounds) {
   for (const Case& config : {tank_case(2), box_case(2), jet_case(30.0), jet_case(90.0), jet_case(30.0, "steady"),
                              tank_case(2, "mirror"), jet_case(30.0, "steady", "mirror")}) {
-    const Box<2> bounds = make_geometry<2>(config)->bounds();
+    const Box<2> bounds = scene_of<2>(config).bounds;
     const Particles<2> particles = fill<2>(config);
     for (const auto& position : particles.position) {
       for (int k = 0; k < 2; ++k) {
@@ -255,25 +259,31 @@ TEST(Geometry, ParticlesStartInsideTheBounds) {
   }
 }
 
-TEST(Geometry, JetIsTwoDimensional) { EXPECT_THROW(make_geometry<3>(jet_case(60.0)), InputError); }
+TEST(Geometry, JetIsTwoDimensional) { EXPECT_THROW(scene_of<3>(jet_case(60.0)), InputError); }
+
+BoundaryFlow pass(
+    Scene<2>& scene, double dt, Particles<2>& particles,
+    const std::function<bool(const Vector<2>&)>& owns = [](const Vector<2>&) { return true; }) {
+  return pass_open_boundaries<2>(dt, scene.inlets, scene.outlets, scene.next_id, particles, owns);
+}
 
 /// The inlet under test: fluid leaves the list after a step, so that only the buffer is left.
 class JetInlet : public testing::TestWithParam<double> {
  protected:
   JetInlet() {
-    geometry_->fill(0, 1, particles_);
+    scene_.fill(0, 1, particles_);
     const double angle = GetParam() * std::numbers::pi / 180.0;
     along_ = {{std::cos(angle), -std::sin(angle)}};
     ids_.insert(particles_.id.begin(), particles_.id.end());
     keep_buffer();
   }
 
-  /// Moves the buffer and lets the geometry act.
+  /// Moves the buffer and lets the scene act.
   BoundaryFlow step(double dt) {
-    for (auto& position : particles_.position) position += dt * geometry_->inlet_velocity();
+    for (auto& position : particles_.position) position += dt * scene_.inlets[0].velocity();
     travelled_ += dt * speed;
     const int before = particles_.owned;
-    const BoundaryFlow flow = geometry_->move_boundaries(dt, particles_, [](const Vector<2>&) { return true; });
+    const BoundaryFlow flow = pass(scene_, dt, particles_);
     EXPECT_EQ(flow.left, 0);
     for (int i = 0; i < particles_.owned; ++i) {
       const auto record = particles_.record(i);
@@ -310,7 +320,7 @@ class JetInlet : public testing::TestWithParam<double> {
     particles_ = buffer;
   }
 
-  std::unique_ptr<Geometry<2>> geometry_ = make_geometry<2>(jet_case(GetParam()));
+  Scene<2> scene_ = scene_of<2>(jet_case(GetParam()));
   Particles<2> particles_;
   std::set<std::int64_t> ids_;
   Vector<2> along_;
@@ -348,9 +358,9 @@ TEST_P(JetInlet, FeedsTheSameParticlesWhenTheyAreSharedOut) {
   const double dt = 0.3 * dp / speed;
   std::map<std::int64_t, std::array<double, 2>> whole, shared;
   const auto feed = [&](const std::function<bool(const Vector<2>&)>& owns, auto& fed) {
-    const auto geometry = make_geometry<2>(jet_case(GetParam()));
+    auto scene = scene_of<2>(jet_case(GetParam()));
     Particles<2> none;
-    for (int k = 0; k < 50; ++k) geometry->move_boundaries(dt, none, owns);
+    for (int k = 0; k < 50; ++k) pass(scene, dt, none, owns);
     for (int i = 0; i < none.owned; ++i) {
       const auto record = none.record(i);
       EXPECT_TRUE(fed.try_emplace(record.id, record.position.component).second);
@@ -366,7 +376,7 @@ TEST_P(JetInlet, FeedsTheSameParticlesWhenTheyAreSharedOut) {
 TEST_P(JetInlet, FluidPastTheOutletsLeaves) {
   Particles<2> fluid;
   const Case config = jet_case(GetParam());
-  const Box<2> bounds = geometry_->bounds();
+  const Box<2> bounds = scene_.bounds;
   const double right = std::max(config.plate.end, bounds.high[0]);
   const double left = std::min(config.plate.begin, bounds.low[0]);
   const auto put = [&](double x, double y) {
@@ -376,7 +386,7 @@ TEST_P(JetInlet, FluidPastTheOutletsLeaves) {
   put(left - dp, dp);
   put(0.0, bounds.high[1]);
   put(0.0, dp);
-  const BoundaryFlow flow = geometry_->move_boundaries(1e-9, fluid, [](const Vector<2>&) { return true; });
+  const BoundaryFlow flow = pass(scene_, 1e-9, fluid);
   EXPECT_EQ(flow.left, 3);
   ASSERT_EQ(fluid.owned, 1);
   EXPECT_EQ(fluid.position[0], (Vector<2>{{0.0, dp}}));
@@ -421,7 +431,7 @@ TEST_P(JetInlet, SteadyStartFillsTheAnalyticJet) {
   // The lowest row's pressure, half a spacing above the plate, carries most of the jet's force.
   EXPECT_NEAR(force / analytic.normal_force(), 1.0, 0.1);
   // No voids: every point of the analytic jet inside the domain has a particle near it.
-  const Box<2> bounds = geometry_->bounds();
+  const Box<2> bounds = scene_.bounds;
   std::mt19937 random(13);
   std::uniform_real_distribution<double> x(bounds.low[0], config.plate.end), y(0.0, bounds.high[1]);
   const Vector<2> inlet = {{analytic.axis_position() - config.jet.inlet_distance * width * along_[0],
@@ -443,12 +453,12 @@ INSTANTIATE_TEST_SUITE_P(Angles, JetInlet, testing::Values(30.0, 47.0, 60.0, 90.
 
 TEST(Tank, WallNormalsPointIntoTheFluid) {
   for (const char* walls : {"particles", "mirror"}) {
-    const auto geometry = make_geometry<3>(tank_case(3, walls));
+    const auto scene = scene_of<3>(tank_case(3, walls));
     const Particles<3> particles = fill<3>(tank_case(3, walls));
     const Vector<3> size{{0.2, 0.05, 0.1}};
     for (std::size_t i = 0; i < particles.position.size(); ++i) {
       if (particles.type[i] != ParticleType::wall) continue;
-      const Vector<3> normal = geometry->wall_normal(particles.position[i]);
+      const Vector<3> normal = scene.wall_normal(particles.position[i]);
       EXPECT_NEAR(norm(normal), 1.0, 1e-14);
       const Vector<3> inside = particles.position[i] + 0.01 * normal;
       for (int k = 0; k < 3; ++k) {
@@ -457,14 +467,14 @@ TEST(Tank, WallNormalsPointIntoTheFluid) {
       }
     }
   }
-  const auto tank = make_geometry<2>(shipped_case("hydrostatic.toml"));  // 0.2 m wide
-  EXPECT_EQ(tank->wall_normal({{0.1, -0.005}}), (Vector<2>{{0.0, 1.0}}));
-  EXPECT_EQ(tank->wall_normal({{-0.005, 0.1}}), (Vector<2>{{1.0, 0.0}}));
-  EXPECT_EQ(tank->wall_normal({{0.205, 0.1}}), (Vector<2>{{-1.0, 0.0}}));
-  const Vector<2> corner = tank->wall_normal({{0.205, -0.005}});
+  const auto tank = scene_of<2>(shipped_case("hydrostatic.toml"));  // 0.2 m wide
+  EXPECT_EQ(tank.wall_normal({{0.1, -0.005}}), (Vector<2>{{0.0, 1.0}}));
+  EXPECT_EQ(tank.wall_normal({{-0.005, 0.1}}), (Vector<2>{{1.0, 0.0}}));
+  EXPECT_EQ(tank.wall_normal({{0.205, 0.1}}), (Vector<2>{{-1.0, 0.0}}));
+  const Vector<2> corner = tank.wall_normal({{0.205, -0.005}});
   EXPECT_DOUBLE_EQ(corner[0], -std::sqrt(0.5));
   EXPECT_DOUBLE_EQ(corner[1], std::sqrt(0.5));
-  EXPECT_EQ(make_geometry<2>(shipped_case("jet60-quick.toml"))->wall_normal({{0.5, -0.01}}), (Vector<2>{{0.0, 1.0}}));
+  EXPECT_EQ(scene_of<2>(shipped_case("jet60-quick.toml")).wall_normal({{0.5, -0.01}}), (Vector<2>{{0.0, 1.0}}));
 }
 
 }  // namespace

@@ -1,0 +1,80 @@
+#pragma once
+// The pressure of a step, and what it does to the velocities.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "impinge/method/body_force.hpp"
+#include "impinge/method/pressure/solver.hpp"
+#include "impinge/method/pressure/two_level.hpp"
+#include "impinge/method/settings.hpp"
+#include "impinge/method/state.hpp"
+#include "impinge/method/surface.hpp"
+
+namespace impinge {
+
+/// Makes the velocity u* of a step divergence-free: lap p = (1 - gamma) rho/dt div u* - gamma rho/dt^2 crowding (paper
+/// eq. 8), then u = u* - dt/rho grad p. Every function that is not const is collective.
+template <int Dim>
+class Projection {
+ public:
+  Projection(MPI_Comm comm, const MethodSettings& settings, const CellGrid<Dim>& cells);
+
+  /// What a step's sources depend on besides the particles.
+  struct Step {
+    double dt;               ///< [s]
+    double reference_speed;  ///< lower bound of the speed at which density errors are corrected [m/s]
+    double max_speed;        ///< of the fluid [m/s]
+  };
+
+  /// Solves for the pressures of all particles. A solve that fails is repeated from zero with a new preconditioner;
+  /// `cold_solves` counts these. The report of a second failure says why.
+  PressureReport solve(const Step& step, const BodyForce<Dim>& force, State<Dim>& state, int last_iterations,
+                       int& cold_solves);
+
+  /// -dt/rho grad p of the owned fluid particles [m/s]. Not collective.
+  std::vector<Vector<Dim>> velocity_change(double dt, const State<Dim>& state) const;
+
+  /// Makes the next solve a cold one: it starts from zero and with a new coarse matrix. Not collective.
+  void forget(Particles<Dim>& particles);
+
+  const PressureSolver& solver() const { return solver_; }
+
+  /// The preconditioner, unless the options chose another.
+  std::optional<TwoLevelPreconditioner<Dim>>& two_level() { return two_level_; }
+  const std::optional<TwoLevelPreconditioner<Dim>>& two_level() const { return two_level_; }
+
+  /// Sums of the near radius on the full lattice.
+  const LatticeSums& lattice() const { return near_sums_; }
+
+  /// 2 Dim/(n0 lambda) of the Laplacian [1/m^2].
+  double laplacian_factor() const { return laplacian_factor_; }
+
+  /// Gives the preconditioner the owners of the cells where they are new to it.
+  void follow_partition(const Decomposition<Dim>& decomposition);
+
+  /// Memory of matrix and preconditioner [bytes].
+  std::size_t bytes() const;
+
+ private:
+  void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
+  std::vector<double> sources(const Step& step, State<Dim>& state) const;
+  double crowding(const State<Dim>& state, int i) const;
+  double surface_weight(const State<Dim>& state, int i, const PairRow& far) const;
+  PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
+  void share_pressure(State<Dim>& state) const;
+  double base_pressure(const State<Dim>& state, int i) const;
+
+  const MethodSettings& settings_;
+  LatticeSums near_sums_;    // of the number density's radius
+  LatticeSums far_sums_;     // of the Laplacian's radius
+  double laplacian_factor_;  // [1/m^2]
+  SurfaceClosure<Dim> closure_;
+  PressureSolver solver_;
+  std::optional<TwoLevelPreconditioner<Dim>> two_level_;
+  int partitions_seen_ = 0;           // by two_level_
+  std::vector<double> image_offset_;  // of an image's pressure over that of its original [Pa]; empty: none
+};
+
+}  // namespace impinge

@@ -1,0 +1,23 @@
+#pragma once
+// Particle shifting keeps the cloud regular.
+
+#include "impinge/method/settings.hpp"
+#include "impinge/method/state.hpp"
+
+namespace impinge {
+
+/// What shifting does to the owned particles.
+template <int Dim>
+struct Shift {
+  std::vector<Vector<Dim>> displacement;     ///< [m]
+  std::vector<Vector<Dim>> velocity_change;  ///< [m/s]
+};
+
+/// Particles drift to where neighbours are missing, delta = C u_ref dt F_i, at most 0.1 dp. They do not drift through
+/// the free surface; beside it, they push each other apart where they are too near. They take the velocity of their new
+/// place. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the full lattice [-]. Collective.
+template <int Dim>
+Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
+                    State<Dim>& state);
+
+}  // namespace impinge

@@ -1,0 +1,39 @@
+#include "impinge/method/costs.hpp"
+
+#include "impinge/method/pressure/two_level.hpp"
+#include "impinge/parallel/decomposition.hpp"
+
+namespace impinge {
+
+template <int Dim>
+std::size_t bytes_per_particle() {
+  return 2 * (sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t)) + sizeof(PressureRole) +
+         2 * sizeof(double) + 5 * sizeof(Vector<Dim>) + sizeof(Matrix<Dim>) + sizeof(PetscInt);
+}
+
+template <int Dim>
+UnitCosts unit_costs(const MethodSettings& settings) {
+  const int near = lattice_sums<Dim>(settings.kernel.type, settings.kernel.radius).neighbours;
+  const int far = lattice_sums<Dim>(settings.kernel.type, settings.kernel.laplacian_radius).neighbours;
+  constexpr double pair = sizeof(int) + sizeof(double);
+  constexpr double entry = sizeof(PetscInt) + sizeof(double);
+  // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice; the
+  // consistent scheme also surface marks, asymmetry and velocity.
+  double traffic = sizeof(typename Decomposition<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
+  if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
+  if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
+  if (settings.free_surface.zero_outside || settings.shifting.coefficient > 0.0) traffic += sizeof(Vector<Dim>) + 1.0;
+  if (settings.shifting.coefficient > 0.0 && settings.shifting.correct_velocity) traffic += sizeof(Vector<Dim>);
+  return {.particle_memory = static_cast<double>(bytes_per_particle<Dim>()) + 2.0 * sizeof(int) +
+                             sizeof(Vector<Dim>),  // with the cells' order
+          .row_memory = near * pair + (0.5 * far + 1.0) * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
+          .cell_memory = 3.0 * sizeof(int),
+          .halo_traffic = traffic};
+}
+
+template std::size_t bytes_per_particle<2>();
+template std::size_t bytes_per_particle<3>();
+template UnitCosts unit_costs<2>(const MethodSettings&);
+template UnitCosts unit_costs<3>(const MethodSettings&);
+
+}  // namespace impinge

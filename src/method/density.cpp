@@ -1,0 +1,46 @@
+#include "impinge/method/density.hpp"
+
+#include "impinge/method/operators.hpp"
+
+namespace impinge {
+
+template <int Dim>
+void measure_density(const MethodSettings& settings, const LatticeSums& lattice, State<Dim>& state) {
+  Particles<Dim>& particles = state.particles;
+  const PairList& near = state.near();
+  const double n0 = lattice.number_density;
+  const FreeSurfaceSettings& limits = settings.free_surface;
+  const bool walls_measure = settings.walls.model == WallModel::mirror;
+  const bool corrects = settings.pressure.corrected_divergence || settings.pressure.corrected_gradient;
+  const bool needs_asymmetry = limits.zero_outside || settings.shifting.coefficient > 0.0;
+  number_density(near, particles.number_density);
+  state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);
+  state.asymmetry.assign(particles.position.size(), {});
+  if (corrects) state.correction.assign(state.owned(), Matrix<Dim>::identity());
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    const ParticleType type = particles.type[self];
+    particles.free_surface[self] = 0;
+    if (type == ParticleType::inlet) state.role[self] = PressureRole::zero;
+    if (type != ParticleType::fluid && (type != ParticleType::wall || walls_measure)) continue;
+    const double n = particles.number_density[self];
+    const bool undecided = n >= limits.surface_density * n0 && n <= limits.interior_density * n0;
+    if (undecided || needs_asymmetry) state.asymmetry[self] = asymmetry<Dim>(near, particles.position, n0, i);
+    if (corrects && type == ParticleType::fluid)
+      state.correction[self] = moment_correction<Dim>(near, particles.position, n0, i);
+    const bool surface = n < limits.surface_density * n0 ||
+                         (undecided && norm(state.asymmetry[self]) > limits.asymmetry * lattice.surface_asymmetry);
+    particles.free_surface[self] = surface;
+    const bool zero = limits.zero_outside && type == ParticleType::fluid ? is_spray(particles, n0, self) : surface;
+    state.role[self] = zero ? PressureRole::zero : PressureRole::unknown;
+    if (type == ParticleType::wall) state.asymmetry[self] = {};  // the free surface is the fluid's
+  }
+  state.decomposition.halo().refresh(state.role, particles.owned);
+  if (corrects || needs_asymmetry) state.refresh(particles.free_surface);
+  if (needs_asymmetry) state.refresh_directions(state.asymmetry);
+}
+
+template void measure_density(const MethodSettings&, const LatticeSums&, State<2>&);
+template void measure_density(const MethodSettings&, const LatticeSums&, State<3>&);
+
+}  // namespace impinge

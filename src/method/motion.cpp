@@ -1,0 +1,71 @@
+#include "impinge/method/motion.hpp"
+
+#include "impinge/method/operators.hpp"
+
+namespace impinge {
+namespace {
+
+// A viscous fluid does not slip: its images move against it; those of two mirrors, in a corner, with it.
+template <int Dim>
+void hold_images(State<Dim>& state) {
+  std::vector<Vector<Dim>>& velocity = state.particles.velocity;
+  state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
+    velocity[at] = state.walls.reflection(image).parity * velocity[from];
+  });
+}
+
+}  // namespace
+
+template <int Dim>
+void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double viscosity, double laplacian_factor,
+                State<Dim>& state) {
+  Particles<Dim>& particles = state.particles;
+  std::vector<Vector<Dim>> change(state.owned());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = rule.dt * force.at(particles.position[i]);
+  if (viscosity > 0.0) {
+    state.decomposition.halo().refresh(particles.velocity, particles.owned);
+    hold_images(state);
+    state.search.for_far_rows([&](int i, const PairRow& row) {
+      change[static_cast<std::size_t>(i)] +=
+          viscosity * rule.dt * velocity_laplacian<Dim>(row, particles.velocity, laplacian_factor, i);
+    });
+  }
+  const double excess = (1.0 - rule.new_share) * rule.dt;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    if (!state.moves(i)) continue;
+    particles.velocity[i] += change[i];
+    particles.position[i] -= excess * change[i];
+  }
+}
+
+template <int Dim>
+void collide(const CollisionSettings& settings, double spacing, double dt, State<Dim>& state) {
+  if (settings.distance == 0.0) return;
+  Particles<Dim>& particles = state.particles;
+  state.refresh_positions();
+  state.refresh_directions(particles.velocity);
+  const double distance = settings.distance * spacing;
+  std::vector<Vector<Dim>> change(state.owned());
+  for (std::size_t i = 0; i < change.size(); ++i)
+    if (state.moves(i))
+      change[i] = collision<Dim>(state.near(), particles.position, particles.velocity, particles.type,
+                                 state.wall_normal, dt, distance, settings.restitution, static_cast<int>(i));
+  for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
+}
+
+template <int Dim>
+void advance(double dt, Particles<Dim>& particles) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::inlet)
+      particles.position[i] += dt * particles.velocity[i];
+}
+
+#define IMPINGE_INSTANTIATE(Dim)                                                                   \
+  template void accelerate(const MotionRule&, const BodyForce<Dim>&, double, double, State<Dim>&); \
+  template void collide(const CollisionSettings&, double, double, State<Dim>&);                    \
+  template void advance(double, Particles<Dim>&);
+IMPINGE_INSTANTIATE(2)
+IMPINGE_INSTANTIATE(3)
+#undef IMPINGE_INSTANTIATE
+
+}  // namespace impinge

@@ -1,0 +1,202 @@
+#include "impinge/method/pressure/projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "impinge/method/operators.hpp"
+#include "impinge/method/phase.hpp"
+
+namespace impinge {
+
+template <int Dim>
+Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const CellGrid<Dim>& cells)
+    : settings_(settings),
+      near_sums_(lattice_sums<Dim>(settings.kernel.type, settings.kernel.radius)),
+      far_sums_(lattice_sums<Dim>(settings.kernel.type, settings.kernel.laplacian_radius)),
+      laplacian_factor_(2.0 * Dim /
+                        (far_sums_.number_density * far_sums_.lambda * std::pow(settings.particles.spacing, 2))),
+      closure_(settings.kernel.type, settings.kernel.laplacian_radius),
+      solver_(comm, settings.pressure.tolerance) {
+  if (solver_.is_two_level()) two_level_.emplace(comm, cells);
+}
+
+template <int Dim>
+void Projection<Dim>::forget(Particles<Dim>& particles) {
+  std::fill(particles.pressure.begin(), particles.pressure.end(), 0.0);
+  if (two_level_) two_level_->expire();
+}
+
+template <int Dim>
+void Projection<Dim>::follow_partition(const Decomposition<Dim>& decomposition) {
+  if (std::exchange(partitions_seen_, decomposition.partitions()) != decomposition.partitions())
+    two_level_->set_owners(decomposition.owners());
+}
+
+template <int Dim>
+PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& force, State<Dim>& state,
+                                      int last_iterations, int& cold_solves) {
+  std::vector<double> source;
+  {
+    const PhaseLog log(Phase::assembly);
+    find_image_offsets(step.dt, force, state);
+    source = sources(step, state);
+  }
+  PressureReport report = try_solve(source, state, last_iterations);
+  if (!report.failure.empty()) {
+    ++cold_solves;
+    forget(state.particles);
+    report = try_solve(source, state, report.iterations);
+  }
+  if (!report.failure.empty()) return report;
+  if (settings_.pressure.clamp_negative)
+    for (std::size_t i = 0; i < state.owned(); ++i)
+      state.particles.pressure[i] = std::max(state.particles.pressure[i], 0.0);
+  share_pressure(state);
+  return report;
+}
+
+// The body force acts on an image as on its original, so that its velocity is the mirrored one but for dt g, and a
+// pressure that balances the force differs by rho g.(r' - r); g in the middle between the two.
+template <int Dim>
+void Projection<Dim>::find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state) {
+  image_offset_.clear();
+  if (state.walls.empty() || force.is_zero()) return;
+  Particles<Dim>& particles = state.particles;
+  image_offset_.resize(state.walls.count());
+  state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
+    const Vector<Dim> way = particles.position[at] - particles.position[from];
+    const Vector<Dim> acceleration = force.at(particles.position[from] + 0.5 * way);
+    image_offset_[image] = settings_.fluid.density * dot(acceleration, way);
+    particles.velocity[at] += dt * (acceleration - state.walls.reflection(image).linear * acceleration);
+  });
+}
+
+template <int Dim>
+std::vector<double> Projection<Dim>::sources(const Step& step, State<Dim>& state) const {
+  Particles<Dim>& particles = state.particles;
+  const PressureSettings& pressure = settings_.pressure;
+  const double n0 = near_sums_.number_density;
+  const double rho = settings_.fluid.density;
+  const double dt = step.dt;
+  const double speed = std::max(pressure.density_speed * step.max_speed, step.reference_speed);
+  const double gamma = pressure.density_speed > 0.0
+                           ? std::min(1.0, std::pow(speed * dt / settings_.particles.spacing, 2))
+                           : pressure.gamma;
+  std::vector<double> source(state.owned(), 0.0);
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (state.role[self] != PressureRole::unknown) {
+      particles.pressure[self] = 0.0;
+      continue;
+    }
+    const double flow = pressure.corrected_divergence
+                            ? corrected_divergence<Dim>(state.near(), particles.position, particles.velocity,
+                                                        state.wall_normal, state.correction[self], n0, i)
+                            : divergence<Dim>(state.near(), particles.position, particles.velocity, n0, i);
+    source[self] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding(state, i);
+  }
+  return source;
+}
+
+// (n* - n0)/n0, or the packing's. The free surface misses neighbours, which says nothing of crowding.
+template <int Dim>
+double Projection<Dim>::crowding(const State<Dim>& state, int i) const {
+  const auto self = static_cast<std::size_t>(i);
+  if (state.particles.free_surface[self]) return 0.0;
+  return settings_.pressure.packing ? packing(state.near(), settings_.kernel.type, i) / near_sums_.packing - 1.0
+                                    : state.particles.number_density[self] / near_sums_.number_density - 1.0;
+}
+
+// Of p = 0 beyond the surface, on the diagonal of a particle's row.
+template <int Dim>
+double Projection<Dim>::surface_weight(const State<Dim>& state, int i, const PairRow& far) const {
+  if (!settings_.free_surface.zero_outside) return 0.0;
+  if (state.role[static_cast<std::size_t>(i)] != PressureRole::unknown) return 0.0;
+  return closure_.weight(surface_depth<Dim>(far, state.particles.position, state.asymmetry,
+                                            state.particles.free_surface, settings_.particles.spacing, i));
+}
+
+template <int Dim>
+PressureReport Projection<Dim>::try_solve(std::span<const double> source, State<Dim>& state, int last_iterations) {
+  {
+    const PhaseLog log(Phase::assembly);
+    const auto for_rows = [&](const auto& use) {
+      state.search.for_far_rows([&](int i, const PairRow& row) { use(i, {row, surface_weight(state, i, row)}); });
+    };
+    solver_.assemble({.for_rows = for_rows,
+                      .role = state.role,
+                      .row = state.decomposition.rows(),
+                      .source = source,
+                      .laplacian_factor = laplacian_factor_,
+                      .n0 = far_sums_.number_density,
+                      .usual_pairs = far_sums_.neighbours,
+                      .original = state.walls.originals(),
+                      .image_offset = image_offset_},
+                     state.decomposition.halo());
+    if (two_level_) {
+      const PhaseLog log_set_up(Phase::set_up);
+      follow_partition(state.decomposition);
+      const std::span<const Vector<Dim>> position(state.particles.position);
+      two_level_->update(solver_.rows(), state.role, position.first(state.role.size()), state.decomposition.halo(),
+                         last_iterations);
+      two_level_->attach(solver_.preconditioner());
+    }
+  }
+  const PhaseLog log(Phase::solve);
+  return solver_.solve(state.particles.pressure);
+}
+
+// To halo and images; wall particles that measure take the mean around them.
+template <int Dim>
+void Projection<Dim>::share_pressure(State<Dim>& state) const {
+  std::vector<double>& pressure = state.particles.pressure;
+  state.refresh(pressure);
+  if (!image_offset_.empty())
+    state.walls.for_images(
+        [&](std::size_t image, std::size_t at, std::size_t) { pressure[at] += image_offset_[image]; });
+  if (settings_.walls.model != WallModel::mirror) return;
+  for (std::size_t i = 0; i < state.owned(); ++i)
+    if (state.particles.type[i] == ParticleType::wall)
+      pressure[i] = weighted_mean(state.near(), pressure, static_cast<int>(i));
+}
+
+template <int Dim>
+std::vector<Vector<Dim>> Projection<Dim>::velocity_change(double dt, const State<Dim>& state) const {
+  const Particles<Dim>& particles = state.particles;
+  const double factor = dt / settings_.fluid.density;
+  const double n0 = near_sums_.number_density;
+  std::vector<Vector<Dim>> change(state.owned());
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (!state.moves(self)) continue;
+    const Vector<Dim> gradient = settings_.pressure.corrected_gradient && !particles.free_surface[self]
+                                     ? corrected_gradient<Dim>(state.near(), particles.position, particles.pressure,
+                                                               base_pressure(state, i), state.correction[self], n0, i)
+                                     : pressure_gradient<Dim>(state.near(), particles.position, particles.pressure,
+                                                              particles.type, state.wall_normal, n0, i);
+    change[self] = -factor * gradient;
+  }
+  return change;
+}
+
+// Differences of pressure alone leave the forces of a pair unequal: beside the surface, whose particles have them
+// equal, that feeds its waves, so the pressures there push as well.
+template <int Dim>
+double Projection<Dim>::base_pressure(const State<Dim>& state, int i) const {
+  const PairList& near = state.near();
+  for (int k = near.begin(i); k < near.end(i); ++k)
+    if (state.particles.free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])])
+      return least_pressure(near, state.particles.pressure, i);
+  return state.particles.pressure[static_cast<std::size_t>(i)];
+}
+
+template <int Dim>
+std::size_t Projection<Dim>::bytes() const {
+  return solver_.bytes() + (two_level_ ? two_level_->bytes() : 0);
+}
+
+template class Projection<2>;
+template class Projection<3>;
+
+}  // namespace impinge

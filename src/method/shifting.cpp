@@ -1,0 +1,42 @@
+#include "impinge/method/shifting.hpp"
+
+#include "impinge/method/density.hpp"
+#include "impinge/method/operators.hpp"
+#include "impinge/method/surface.hpp"
+
+namespace impinge {
+
+constexpr double largest_shift = 0.1;  // of a step [dp]
+
+template <int Dim>
+Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
+                    State<Dim>& state) {
+  Particles<Dim>& particles = state.particles;
+  Shift<Dim> shift{std::vector<Vector<Dim>>(state.owned()), std::vector<Vector<Dim>>(state.owned())};
+  const double scale = shifting.coefficient * speed * dt;
+  if (scale == 0.0) return shift;
+  const double largest = largest_shift * spacing;
+  if (shifting.correct_velocity) state.refresh_directions(particles.velocity);
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (!state.moves(self) || is_spray(particles, n0, self)) continue;
+    const Vector<Dim> normal = surface_normal<Dim>(state.near(), state.asymmetry, particles.free_surface, i);
+    Vector<Dim> delta = scale * state.asymmetry[self];
+    if (normal != Vector<Dim>{}) {
+      delta -= dot(delta, normal) * normal;
+      delta +=
+          scale * repulsion<Dim>(state.near(), particles.position, particles.type, shifting.least_distance, spacing, i);
+    }
+    if (const double length = norm(delta); length > largest) delta *= largest / length;
+    shift.displacement[self] = delta;
+    if (shifting.correct_velocity)
+      shift.velocity_change[self] = velocity_change_along<Dim>(state.near(), particles.position, particles.velocity,
+                                                               particles.type, delta, n0, i);
+  }
+  return shift;
+}
+
+template Shift<2> shift_of(const ShiftingSettings&, double, double, double, double, State<2>&);
+template Shift<3> shift_of(const ShiftingSettings&, double, double, double, double, State<3>&);
+
+}  // namespace impinge

@@ -1,0 +1,22 @@
+#include "impinge/method/time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace impinge {
+
+void choose_time_step(const TimeSettings& time, double spacing, StepReport& report) {
+  constexpr double first_courant = 0.05;
+  constexpr double most_growth = 1.1;
+  const double largest = time.cfl * spacing / report.max_speed;  // infinite at rest
+  const double grown = report.dt > 0.0 ? most_growth * report.dt : first_courant / time.cfl * largest;
+  report.dt = std::min({time.dt, largest, grown});
+  if (report.halvings > 0) {
+    report.dt = std::ldexp(report.dt, -report.halvings);
+    report.limit = StepLimit::retry;
+    return;
+  }
+  report.limit = report.dt == time.dt ? StepLimit::case_dt : report.dt == largest ? StepLimit::cfl : StepLimit::growth;
+}
+
+}  // namespace impinge
