@@ -1,8 +1,7 @@
 #pragma once
 // What a run of the method can be told, besides its scene. SI units; lengths that the method scales are in dp.
 
-#include <array>
-
+#include "impinge/config/key.hpp"
 #include "impinge/parallel/graph_partition.hpp"
 #include "impinge/particles/kernel.hpp"
 
@@ -11,10 +10,14 @@ namespace impinge {
 enum class Scheme { consistent, paper };
 enum class WallModel { mirror, particles };
 
+constexpr auto words(Scheme) { return std::to_array<std::string_view>({"consistent", "paper"}); }
+constexpr auto words(WallModel) { return std::to_array<std::string_view>({"mirror", "particles"}); }
+constexpr auto words(KernelType) { return std::to_array<std::string_view>({"non_singular", "singular"}); }
+
 struct FluidSettings {
-  double density = 1000.0;                       ///< [kg/m^3]
-  double viscosity = 0.0;                        ///< kinematic [m^2/s]
-  std::array<double, 3> gravity{0.0, 0.0, 0.0};  ///< [m/s^2]
+  double density = 1000.0;  ///< [kg/m^3]
+  double viscosity = 0.0;   ///< kinematic [m^2/s]
+  Numbers gravity{};        ///< [m/s^2]
 };
 
 struct ParticleSettings {
@@ -28,50 +31,49 @@ struct KernelSettings {
 };
 
 struct PressureSettings {
-  double gamma = 0.01;                ///< weight of the density term in the PPE source, unless density_speed is set
-  double density_speed = 0.0;         ///< speed at which a density error is corrected [u_max]; by scheme
-  bool corrected_divergence = false;  ///< divergence exact on linear velocities; by scheme
-  bool packing = false;               ///< density errors by the packing, not by the number density; by scheme
-  bool corrected_gradient = false;    ///< gradient by differences of pressure, but at the surface; by scheme
-  double tolerance = 1e-6;            ///< relative residual of the PPE solve
-  bool clamp_negative = true;         ///< set negative pressures to zero after the solve
+  double gamma = 0.01;          ///< weight of the density term in the PPE source, unless density_speed is set
+  double density_speed{};       ///< speed at which a density error is corrected [u_max]; by scheme
+  bool corrected_divergence{};  ///< divergence exact on linear velocities; by scheme
+  bool packing{};               ///< density errors by the packing, not by the number density; by scheme
+  bool corrected_gradient{};    ///< gradient by differences of pressure, but at the surface; by scheme
+  double tolerance = 1e-6;      ///< relative residual of the PPE solve
+  bool clamp_negative = true;   ///< set negative pressures to zero after the solve
 };
 
 struct WallSettings {
-  WallModel model = WallModel::particles;  ///< by scheme
+  WallModel model{};  ///< by scheme
 };
 
 struct FreeSurfaceSettings {
   double surface_density = 0.8;    ///< n/n0 below which a particle is free surface
   double interior_density = 0.97;  ///< n/n0 above which it is not
   double asymmetry = 0.9;          ///< between the two: surface if |F| > asymmetry |F|0
-  bool zero_outside = false;       ///< p = 0 half a spacing outside the surface particles, not at them; by scheme
+  bool zero_outside{};             ///< p = 0 half a spacing outside the surface particles, not at them; by scheme
 };
 
 struct CollisionSettings {
-  double distance = 0.8;     ///< [dp]; 0 switches collisions off; by scheme
+  double distance{};         ///< [dp]; 0 switches collisions off; by scheme
   double restitution = 0.2;  ///< [-]
 };
 
 struct ShiftingSettings {
-  double coefficient = 0.0;       ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
-  double least_distance = 0.0;    ///< nearer pairs beside the surface drift apart [dp]; 0: none do; by scheme
-  bool correct_velocity = false;  ///< take the velocity of the new place; by scheme
+  double coefficient{};     ///< displacement over asymmetry and Courant number [dp]; 0: none; by scheme
+  double least_distance{};  ///< nearer pairs beside the surface drift apart [dp]; 0: none do; by scheme
+  bool correct_velocity{};  ///< take the velocity of the new place; by scheme
 };
 
 struct TimeSettings {
-  double end = 0.0;            ///< [s]
-  double dt = 0.0;             ///< largest step [s]
-  double cfl = 0.2;            ///< dt <= cfl dp / |u|max
-  bool mean_velocity = false;  ///< particles move with the mean of the old and the new velocity; by scheme
-  double max_speed = 0.0;      ///< speed that counts as divergence [m/s]
+  double end = 0.0;        ///< [s]
+  double dt = 0.0;         ///< largest step [s]
+  double cfl = 0.2;        ///< dt <= cfl dp / |u|max
+  bool mean_velocity{};    ///< particles move with the mean of the old and the new velocity; by scheme
+  double max_speed = 0.0;  ///< speed that counts as divergence [m/s]
 };
 
-/// The method's part of a case. The initial values are those of the paper's scheme; each key's unit, range and doc line
-/// stand where it is declared.
+/// The method's part of a case. What is said to be "by scheme" has no value before derive_method.
 struct MethodSettings {
   int dimension = 2;
-  Scheme scheme = Scheme::consistent;  ///< sets the defaults that are said to be "by scheme"
+  Scheme scheme = Scheme::consistent;  ///< sets the defaults of what is "by scheme"
   FluidSettings fluid;
   ParticleSettings particles;
   KernelSettings kernel;
@@ -89,5 +91,13 @@ struct MethodSettings {
 inline double least_cell_edge(const MethodSettings& settings) {
   return settings.kernel.laplacian_radius * settings.particles.spacing;
 }
+/// Declares dimension, scheme and the tables from [fluid] to [time].
+void declare_method(Keys& keys, MethodSettings& settings);
+
+/// Sets the defaults that depend on the scheme and on other keys. `reference_speed` is the scene's [m/s]; 0: none.
+void derive_method(const Keys& keys, MethodSettings& settings, double reference_speed);
+
+/// Notes where the method's keys contradict each other.
+void check_method(Keys& keys, const MethodSettings& settings);
 
 }  // namespace impinge

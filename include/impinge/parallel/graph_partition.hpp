@@ -5,14 +5,20 @@
 
 #include <vector>
 
+#include "impinge/config/key.hpp"
+
 namespace impinge {
 
 enum class Partitioner { metis, ptscotch };
+constexpr auto words(Partitioner) { return std::to_array<std::string_view>({"metis", "ptscotch"}); }
 
 struct ParallelSettings {
   Partitioner partitioner = Partitioner::metis;
   double imbalance = 1.1;  ///< repartition when max/mean of the owned particles passes it
 };
+
+/// Declares the table [parallel].
+void declare_parallel(Keys& keys, ParallelSettings& settings);
 
 /// A weighted undirected graph in compressed rows, the same on every rank that knows its edges.
 struct CellGraph {

@@ -2,9 +2,9 @@
 // A case: typed, validated, immutable after it is read. SI units; lengths that the method scales are in dp.
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "impinge/config/case_file.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/method/settings.hpp"
 #include "impinge/scenes/settings.hpp"
@@ -28,9 +28,6 @@ struct Case : MethodSettings, SceneSettings {
 
   std::string resolved_text;  ///< the whole case as one TOML text, every key with its value
 };
-
-/// A file's name and its text.
-using NamedText = std::pair<std::string, std::string>;
 
 /// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
 /// Reads the disk; not collective. Throws InputError (missing file, include cycle) that also lists what else is wrong

@@ -1,12 +1,15 @@
 #pragma once
 // The short forms of a scene in a case file. SI units.
 
-#include <array>
+#include "impinge/config/key.hpp"
 
 namespace impinge {
 
 enum class SceneType { jet, tank, periodic_box };
 enum class JetStart { impact, steady };
+
+constexpr auto words(SceneType) { return std::to_array<std::string_view>({"jet", "tank", "periodic_box"}); }
+constexpr auto words(JetStart) { return std::to_array<std::string_view>({"impact", "steady"}); }
 
 struct JetSettings {
   double width = 0.0;           ///< H [m]
@@ -22,13 +25,13 @@ struct PlateSettings {
 };
 
 struct TankSettings {
-  std::array<double, 3> size{0.0, 0.0, 0.0};  ///< inner lengths; the vertical one is the walls' height [m]
-  double fluid_height = 0.0;                  ///< [m]
+  Numbers size{};             ///< inner lengths; the vertical one is the walls' height [m]
+  double fluid_height = 0.0;  ///< [m]
 };
 
 struct PeriodicBoxSettings {
-  std::array<double, 3> size{0.0, 0.0, 0.0};  ///< periods [m]
-  double shear_speed = 0.0;                   ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
+  Numbers size{};            ///< periods [m]
+  double shear_speed = 0.0;  ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
 };
 
 /// The scene's part of a case.
@@ -39,5 +42,25 @@ struct SceneSettings {
   TankSettings tank;
   PeriodicBoxSettings periodic_box;
 };
+
+/// The settings of other modules that a scene depends on.
+struct SceneInputs {
+  const int& dimension;
+  const double& spacing;           ///< dp [m]
+  const double& laplacian_radius;  ///< [dp]
+  const Numbers& gravity;          ///< [m/s^2]
+};
+
+/// Declares the tables of the scenes. `geometry` must be declared before.
+void declare_scenes(Keys& keys, SceneSettings& settings);
+
+/// Speed of the jet, of a fall from the tank's fluid height, or of the box' shear [m/s]; 0 if it is unknown.
+double reference_speed(const Keys& keys, const SceneSettings& settings, const SceneInputs& inputs);
+
+/// Sets the defaults that depend on other keys: the plate's ends, from the analytic jet.
+void derive_scene(const Keys& keys, SceneSettings& settings, const SceneInputs& inputs);
+
+/// Notes where the scene's keys contradict each other or those of other modules. `mirrored`: the walls are mirrors.
+void check_scene(Keys& keys, const SceneSettings& settings, const SceneInputs& inputs, bool mirrored);
 
 }  // namespace impinge

@@ -1,0 +1,32 @@
+#pragma once
+// Case files (TOML): reading them into declared keys, and writing the keys as text.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "impinge/config/key.hpp"
+
+namespace impinge {
+
+/// A file's name and its text.
+using NamedText = std::pair<std::string, std::string>;
+
+/// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
+/// Reads the disk; not collective. Throws InputError (missing file, include cycle) that also lists what else is wrong
+/// in the files it could read, by their `keys`.
+std::vector<NamedText> load_files(const std::string& path, Keys& keys);
+
+/// Reads the files and the `settings` ("key=value") into the keys' settings and checks each value by itself; mistakes
+/// stay in `keys`. Earlier files override later ones, a later setting overrides all. A list of tables is taken whole,
+/// from one file; settings can change the keys of its tables. False if a file is not TOML: what is absent is no mistake
+/// then. Call it once.
+bool read_files(Keys& keys, const std::vector<NamedText>& files, const std::vector<std::string>& settings);
+
+/// All keys that apply with their values, as one TOML text that reads back to the same settings.
+std::string resolved_text(const Keys& keys);
+
+/// Every key with type, unit, range, default and doc line, as a text for the terminal. Gives each list one table.
+std::string describe(Keys& keys);
+
+}  // namespace impinge

@@ -1,0 +1,144 @@
+#include "impinge/method/settings.hpp"
+
+#include <fmt/format.h>
+
+namespace impinge {
+namespace {
+
+/// The defaults that the scheme sets: use(setting, value of the consistent scheme, value of the paper's).
+template <class Use>
+void for_scheme_defaults(MethodSettings& s, Use&& use) {
+  use(s.pressure.density_speed, 0.35, 0.0);
+  use(s.pressure.packing, true, false);
+  use(s.pressure.corrected_divergence, true, false);
+  use(s.pressure.corrected_gradient, true, false);
+  use(s.walls.model, WallModel::mirror, WallModel::particles);
+  use(s.free_surface.zero_outside, true, false);
+  use(s.shifting.coefficient, 1.0, 0.0);
+  use(s.shifting.least_distance, 0.9, 0.0);
+  use(s.shifting.correct_velocity, true, false);
+  use(s.collision.distance, 0.5, 0.8);
+  use(s.time.mean_velocity, true, false);
+}
+
+}  // namespace
+
+void declare_method(Keys& keys, MethodSettings& s) {
+  keys.add("dimension", s.dimension, "dimension of space; the jet has 2", {.range = from_to(2, 3), .fixed = true});
+  keys.add("scheme", s.scheme, "paper: the operators of Tang & Wan; consistent: more accurate ones", {.fixed = true});
+
+  keys.add("fluid.density", s.fluid.density, "density rho", {.unit = "kg/m^3", .range = positive, .fixed = true});
+  keys.add("fluid.viscosity", s.fluid.viscosity, "kinematic viscosity nu", {.unit = "m^2/s", .range = not_negative});
+  keys.add("fluid.gravity", s.fluid.gravity, "gravity; the last component is the vertical one", {.unit = "m/s^2"});
+
+  keys.add("particles.spacing", s.particles.spacing, "particle spacing dp",
+           {.unit = "m", .range = positive, .required = true, .fixed = true});
+
+  keys.add("kernel.type", s.kernel.type, "non_singular: r_e/(0.85 r + 0.15 r_e) - 1; singular: r_e/r - 1",
+           {.fixed = true});
+  keys.add("kernel.radius", s.kernel.radius, "effective radius of number density, gradient and divergence",
+           {.unit = "dp", .range = above_to(1, 6), .fixed = true});
+  keys.add("kernel.laplacian_radius", s.kernel.laplacian_radius, "effective radius of the Laplacian",
+           {.unit = "dp", .range = above_to(1, 6), .fixed = true});
+
+  keys.add("pressure.gamma", s.pressure.gamma,
+           "weight of the density term in the source of the pressure equation, unless pressure.density_speed "
+           "is set; 1 - gamma weighs the divergence",
+           {.range = from_to(0, 1)});
+  keys.add("pressure.density_speed", s.pressure.density_speed,
+           "speed at which density errors are corrected, over the largest fluid speed, but at least "
+           "sqrt(|g| dp): gamma is (speed dt/dp)^2, at most 1; 0: pressure.gamma",
+           {.unit = "u_max", .range = from_to(0, 5), .fallback = "0.0 where gamma is given"});
+  keys.add("pressure.packing", s.pressure.packing,
+           "measure density errors by the sum of (1 - r/r_e)^4 (1 + 4 r/r_e), which disorder leaves alone, "
+           "instead of the number density");
+  keys.add("pressure.corrected_divergence", s.pressure.corrected_divergence,
+           "correct the divergence by the local moment matrix, so that it is exact on linear velocities");
+  keys.add("pressure.corrected_gradient", s.pressure.corrected_gradient,
+           "a gradient of pressure differences corrected likewise; at the surface particles the paper's, "
+           "beside them of differences from the smallest pressure around");
+  keys.add("pressure.tolerance", s.pressure.tolerance,
+           "relative residual at which the pressure equation counts as solved", {.range = above_to(0, 1e-6)});
+  keys.add("pressure.clamp_negative", s.pressure.clamp_negative, "set negative pressures to zero after the solve");
+
+  keys.add("walls.model", s.walls.model,
+           "mirror: the fluid's mirror images; particles: wall particles, and ghosts without a pressure",
+           {.fixed = true});
+
+  keys.add("free_surface.surface_density", s.free_surface.surface_density,
+           "a particle of smaller number density is on the free surface", {.unit = "n0", .range = from_to(0, 1)});
+  keys.add("free_surface.interior_density", s.free_surface.interior_density,
+           "a particle of larger number density is inside the fluid", {.unit = "n0", .range = from_to(0, 2)});
+  keys.add("free_surface.asymmetry", s.free_surface.asymmetry,
+           "between the two densities: on the free surface if the asymmetry |F| is larger than this",
+           {.unit = "|F|0", .range = from_to(0, 2)});
+  keys.add("free_surface.zero_outside", s.free_surface.zero_outside,
+           "p = 0 half a spacing outside the surface particles instead of at them");
+
+  keys.add("shifting.coefficient", s.shifting.coefficient,
+           "particles drift by this times the asymmetry F and u_ref dt/dp each step (u_ref: the largest fluid "
+           "speed, at least sqrt(|g| dp)), at most by 0.1 dp, not through the free surface, spray not at all; "
+           "0: none do",
+           {.unit = "dp", .range = from_to(0, 10)});
+  keys.add("shifting.least_distance", s.shifting.least_distance,
+           "beside the free surface, fluid particles nearer than this drift apart, by the difference times "
+           "shifting.coefficient and u_ref dt/dp; 0: none do",
+           {.unit = "dp", .range = from_to(0, 1)});
+  keys.add("shifting.correct_velocity", s.shifting.correct_velocity,
+           "a shifted particle takes the velocity of its new place, by the local gradient");
+
+  keys.add("collision.distance", s.collision.distance, "approaching particles nearer than this collide; 0: none do",
+           {.unit = "dp", .range = from_to(0, 1)});
+  keys.add("collision.restitution", s.collision.restitution, "coefficient of restitution of a collision",
+           {.range = from_to(0, 1)});
+
+  keys.add("time.end", s.time.end, "time at which the run ends", {.unit = "s", .range = positive, .required = true});
+  keys.add("time.dt", s.time.dt,
+           "largest time step; the first has at most cfl = 0.05, and a step at most 1.1 times the last",
+           {.unit = "s", .range = positive, .required = true});
+  keys.add("time.cfl", s.time.cfl, "the time step is at most cfl dp / |u|max", {.range = above_to(0, 1)});
+  keys.add("time.mean_velocity", s.time.mean_velocity,
+           "in a step, particles move with the mean of their old and their new velocity, not with the new "
+           "one");
+  keys.add("time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
+           {.unit = "m/s",
+            .range = positive,
+            .fallback = "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height) or periodic_box.shear_speed"});
+
+  for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
+    std::string& text = keys.of(setting).about.fallback;
+    text = fmt::format("{}; paper: {}{}{}", value_text(consistent), value_text(paper), text.empty() ? "" : "; ", text);
+  });
+}
+
+void derive_method(const Keys& keys, MethodSettings& s, double reference_speed) {
+  for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
+    if (!keys.given(setting)) setting = s.scheme == Scheme::consistent ? consistent : paper;
+  });
+  if (keys.given(s.pressure.gamma) && !keys.given(s.pressure.density_speed)) s.pressure.density_speed = 0.0;
+  if (!keys.given(s.time.max_speed)) {
+    if (reference_speed == 0.0 && keys.usable(s.particles.spacing, s.time.dt))
+      reference_speed = s.particles.spacing / s.time.dt;  // fluid at rest: one spacing a step
+    s.time.max_speed = 20.0 * reference_speed;
+  }
+}
+
+void check_method(Keys& keys, const MethodSettings& s) {
+  if (keys.usable(s.kernel.radius, s.kernel.laplacian_radius) && s.kernel.radius > s.kernel.laplacian_radius) {
+    keys.mistake(s.kernel.radius, fmt::format("larger than the Laplacian's radius; allowed: (1, {}] (dp)",
+                                              number_text(s.kernel.laplacian_radius)));
+  }
+  const FreeSurfaceSettings& surface = s.free_surface;
+  if (keys.usable(surface.surface_density, surface.interior_density) &&
+      surface.surface_density > surface.interior_density) {
+    keys.mistake(surface.surface_density, fmt::format("larger than the interior's density; allowed: [0, {}] (n0)",
+                                                      number_text(surface.interior_density)));
+  }
+  if (keys.usable(s.fluid.viscosity, s.particles.spacing, s.time.dt) && s.fluid.viscosity > 0.0) {
+    const double limit = 0.2 * s.particles.spacing * s.particles.spacing / s.fluid.viscosity;
+    if (s.time.dt > limit)
+      keys.mistake(s.time.dt, fmt::format("above the viscous limit 0.2 dp^2/nu; allowed: (0, {:.6g}] (s)", limit));
+  }
+}
+
+}  // namespace impinge

@@ -1,0 +1,191 @@
+#include "impinge/scenes/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/scenes/analytic_jet.hpp"
+
+namespace impinge {
+namespace {
+
+double radians(double degrees) { return std::min(degrees * std::numbers::pi / 180.0, 0.5 * std::numbers::pi); }
+
+/// What the plate must catch, in the plate's coordinate [m].
+struct Reach {
+  double low, high;    ///< ends of the stretch that the straight, prolonged jet meets
+  double thin, thick;  ///< where Cp falls to 0.01 in the thin and in the thick sheet
+};
+
+Reach reach_of(const JetSettings& jet) {
+  const AnalyticJet flow(jet.width, 1.0, 1.0, radians(jet.angle));  // the shape knows no speed or density
+  const double half = 0.5 * jet.width / std::sin(flow.angle());
+  return {.low = flow.axis_position() - half,
+          .high = flow.axis_position() + half,
+          .thin = flow.plate_position_of_cp(0.01, AnalyticJet::Side::h2),
+          .thick = flow.plate_position_of_cp(0.01, AnalyticJet::Side::h1)};
+}
+
+/// The first numbers, one per dimension.
+std::span<const double> components(const Numbers& x, int dimension) {
+  return {x.data(), static_cast<std::size_t>(dimension)};
+}
+
+double product(std::span<const double> x) { return std::accumulate(x.begin(), x.end(), 1.0, std::multiplies{}); }
+
+/// Particles that fill a volume [m^3, m^2 in 2D] are counted by 32-bit integers.
+void check_count(Keys& keys, const SceneInputs& in, double volume) {
+  if (!keys.usable(in.spacing, in.dimension)) return;
+  constexpr int most = std::numeric_limits<std::int32_t>::max();
+  const double count = volume / std::pow(in.spacing, in.dimension);
+  if (count <= most) return;
+  keys.mistake(in.spacing, fmt::format("makes some {:.2g} particles; allowed: at most {}", count, most));
+}
+
+/// `setting` is one length or several.
+template <class T>
+void check_multiples(Keys& keys, const SceneInputs& in, const T& setting, std::span<const double> lengths) {
+  if (!keys.usable(setting, in.spacing)) return;
+  for (const double length : lengths) {
+    const double count = length / in.spacing;
+    if (std::abs(count - std::round(count)) <= 1e-6 && count > 0.5) continue;
+    keys.mistake(setting,
+                 fmt::format("{} m is {:.9g} particle spacings; allowed: integer multiples of particles.spacing = {} "
+                             "(m)",
+                             number_text(length), count, number_text(in.spacing)));
+  }
+}
+
+void check_jet(Keys& keys, const JetSettings& jet, const PlateSettings& plate, const SceneInputs& in) {
+  if (keys.usable(jet.width, jet.inlet_distance)) check_count(keys, in, jet.inlet_distance * jet.width * jet.width);
+  if (keys.usable(in.dimension) && in.dimension != 2)
+    keys.mistake(in.dimension, "the jet has two dimensions; allowed: 2");
+  check_multiples(keys, in, jet.width, {&jet.width, 1});
+  if (keys.usable(jet.width, in.spacing) && jet.width < (5.0 - 1e-6) * in.spacing)
+    keys.mistake(jet.width, fmt::format("narrower than 5 particles; allowed: >= {:.6g} (m)", 5.0 * in.spacing));
+  if (keys.usable(jet.angle, jet.inlet_distance)) {
+    // The inlet's lower corner stands H above the plate: d sin a - cos a / 2 >= 1.
+    const double angle = radians(jet.angle);
+    const double least = (1.0 + 0.5 * std::cos(angle)) / std::sin(angle);
+    if (jet.inlet_distance < least) {
+      keys.mistake(
+          jet.inlet_distance,
+          fmt::format("the inlet's lower corner is less than H above the plate; allowed: >= {:.6g} (H)", least));
+    }
+  }
+  if (keys.usable(jet.width, jet.angle)) {
+    const auto [low, high, thin, thick] = reach_of(jet);
+    const std::string misses = fmt::format(
+        "the jet misses the plate, which must reach beyond the stagnation point x = 0 and from x = {:.6g} m "
+        "to {:.6g} m; allowed: ",
+        low, high);
+    if (keys.given(plate.begin) && keys.usable(plate.begin) && (plate.begin >= 0.0 || plate.begin > low))
+      keys.mistake(plate.begin, misses + (low < 0.0 ? fmt::format("<= {:.6g} (m)", low) : "< 0 (m)"));
+    if (keys.given(plate.end) && keys.usable(plate.end) && plate.end < high)
+      keys.mistake(plate.end, misses + fmt::format(">= {:.6g} (m)", high));
+  }
+}
+
+void check_tank(Keys& keys, const TankSettings& tank, const SceneInputs& in, bool mirrored) {
+  const auto size = components(tank.size, in.dimension);
+  if (keys.usable(tank.size)) check_count(keys, in, product(size));
+  check_multiples(keys, in, tank.size, size);
+  check_multiples(keys, in, tank.fluid_height, {&tank.fluid_height, 1});
+  if (mirrored && keys.usable(tank.size, in.spacing, in.laplacian_radius)) {
+    const double least = std::max<double>(in.laplacian_radius, wall_layers) * in.spacing;
+    if (std::ranges::min(size) < least) {
+      keys.mistake(tank.size,
+                   fmt::format("mirrors nearer to each other than the kernel reaches; allowed: >= {:.6g} (m)", least));
+    }
+  }
+  if (keys.usable(tank.size, tank.fluid_height) && tank.fluid_height > size.back()) {
+    keys.mistake(tank.fluid_height,
+                 fmt::format("higher than the walls; allowed: (0, {}] (m)", number_text(size.back())));
+  }
+}
+
+void check_box(Keys& keys, const PeriodicBoxSettings& box, const SceneInputs& in) {
+  const auto size = components(box.size, in.dimension);
+  if (keys.usable(box.size)) check_count(keys, in, product(size));
+  check_multiples(keys, in, box.size, size);
+  if (keys.usable(box.size, in.spacing, in.laplacian_radius)) {
+    const double least = 3.0 * in.laplacian_radius * in.spacing;
+    if (std::ranges::min(size) < least) {
+      keys.mistake(box.size,
+                   fmt::format("a period is shorter than three Laplacian radii; allowed: >= {:.6g} (m)", least));
+    }
+  }
+}
+
+}  // namespace
+
+void declare_scenes(Keys& keys, SceneSettings& s) {
+  keys.only_where(s.geometry, {SceneType::jet}, [&] {
+    keys.add("jet.width", s.jet.width, "jet width H, a multiple of dp",
+             {.unit = "m", .range = positive, .required = true, .fixed = true});
+    keys.add("jet.speed", s.jet.speed, "jet speed U",
+             {.unit = "m/s", .range = positive, .required = true, .fixed = true});
+    keys.add("jet.angle", s.jet.angle, "angle between jet and plate",
+             {.unit = "deg", .range = from_to(1, 90), .required = true, .fixed = true});
+    keys.add("jet.inlet_distance", s.jet.inlet_distance, "distance of the inlet from the plate along the jet's axis",
+             {.unit = "H", .range = positive, .fixed = true});
+    keys.add("jet.start", s.jet.start, "impact: a column about to hit the plate; steady: the analytic jet",
+             {.fixed = true});
+    keys.add("plate.begin", s.plate.begin, "left end of the plate, from the stagnation point; negative",
+             {.unit = "m", .fixed = true, .fallback = "beyond the thin sheet's Cp = 0.01"});
+    keys.add("plate.end", s.plate.end, "right end of the plate, from the stagnation point; positive",
+             {.unit = "m", .fixed = true, .fallback = "beyond the thick sheet's Cp = 0.01"});
+  });
+  keys.only_where(s.geometry, {SceneType::tank}, [&] {
+    keys.add("tank.size", s.tank.size, "inner lengths, multiples of dp; the last is the height of the walls",
+             {.unit = "m", .range = positive, .required = true, .fixed = true});
+    keys.add("tank.fluid_height", s.tank.fluid_height, "height of the fluid at rest, a multiple of dp",
+             {.unit = "m", .range = positive, .required = true, .fixed = true});
+  });
+  keys.only_where(s.geometry, {SceneType::periodic_box}, [&] {
+    keys.add("periodic_box.size", s.periodic_box.size, "periods, multiples of dp",
+             {.unit = "m", .range = positive, .required = true, .fixed = true});
+    keys.add("periodic_box.shear_speed", s.periodic_box.shear_speed,
+             "amplitude U of the initial velocity u_x = U sin(2 pi y / L_y)",
+             {.unit = "m/s", .range = not_negative, .fixed = true});
+  });
+}
+
+double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  if (keys.usable(s.jet.speed)) return s.jet.speed;
+  if (keys.usable(s.tank.fluid_height, in.gravity))
+    return std::sqrt(2.0 * std::hypot(in.gravity[0], in.gravity[1], in.gravity[2]) * s.tank.fluid_height);
+  return keys.usable(s.periodic_box.shear_speed) ? s.periodic_box.shear_speed : 0.0;
+}
+
+void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
+  if (!keys.usable(s.jet.width, s.jet.angle, in.spacing)) return;
+  const auto [low, high, thin, thick] = reach_of(s.jet);
+  const double width = s.jet.width;
+  const double begin = std::min({-2.25 * width, thin - 1.25 * width, low - 0.75 * width});
+  const double end = std::max({4.25 * width, thick + 0.75 * width, high + 0.75 * width});
+  if (!keys.given(s.plate.begin)) s.plate.begin = std::floor(begin / in.spacing + 1e-6) * in.spacing;
+  if (!keys.given(s.plate.end)) s.plate.end = std::ceil(end / in.spacing - 1e-6) * in.spacing;
+}
+
+void check_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in, bool mirrored) {
+  if (!keys.usable(s.geometry)) return;
+  switch (s.geometry) {
+    case SceneType::jet:
+      return check_jet(keys, s.jet, s.plate, in);
+    case SceneType::tank:
+      return check_tank(keys, s.tank, in, mirrored);
+    case SceneType::periodic_box:
+      return check_box(keys, s.periodic_box, in);
+  }
+}
+
+}  // namespace impinge
