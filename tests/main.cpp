@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "impinge/io/snapshot.hpp"
+#include "impinge/io/hdf5_file.hpp"
 #include "impinge/parallel/exchange.hpp"
 
 namespace {
@@ -31,7 +31,7 @@ class FailurePrinter : public testing::EmptyTestEventListener {
 }  // namespace
 
 int main(int argc, char** argv) {
-  impinge::leave_files_to_their_owners();
+  impinge::prepare_file_access();
   MPI_Init(&argc, &argv);
   testing::InitGoogleTest(&argc, argv);
   const int rank = impinge::rank_of(MPI_COMM_WORLD);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "impinge/observe/history.hpp"
 #include "impinge/programs/case.hpp"
 
 namespace impinge {
@@ -59,7 +60,8 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   app.footer(footer);
   app.set_help_flag("-h,--help", "Print this text");
   app.set_version_flag("--version", "impinge " IMPINGE_VERSION, "Print the version");
-  app.add_flag("--describe", describe, "Print every key of a case file with its unit, range, default and meaning")
+  app.add_flag("--describe", describe,
+               "Print every key of a case file and every column of the history with unit and meaning")
       ->disable_flag_override();
   app.add_flag("--check", line.check, "Validate the case; print its particles, memory and time step limits")
       ->disable_flag_override();
@@ -83,7 +85,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   try {
     std::ranges::reverse(own);  // CLI11 takes the words from the back
     app.parse(own);
-    if (describe) line.text = describe_keys();
+    if (describe) line.text = describe_keys() + "\n" + describe_history();
   } catch (const CLI::CallForHelp&) {
     line.text = app.help();
   } catch (const CLI::CallForVersion& version) {

@@ -8,7 +8,7 @@
 
 #include "impinge/core/errors.hpp"
 #include "impinge/core/petsc.hpp"
-#include "impinge/io/snapshot.hpp"
+#include "impinge/io/hdf5_file.hpp"
 #include "impinge/method/simulation.hpp"
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/case.hpp"
@@ -64,7 +64,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  impinge::leave_files_to_their_owners();
+  impinge::prepare_file_access();
   MPI_Init(&argc, &argv);
   const int code = run_program(argc, argv);
   MPI_Finalize();

@@ -12,8 +12,9 @@
 #include <set>
 #include <sstream>
 
+#include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/output.hpp"
-#include "impinge/io/snapshot.hpp"
+#include "impinge/io/run_directory.hpp"
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/make_simulation.hpp"
 #include "impinge/programs/plan.hpp"
@@ -218,10 +219,30 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
   return true;
 }
 
+/// Throws InputError on all ranks where the run cannot write its files. Collective.
+void check_output(MPI_Comm comm, const Case& config) {
+  std::vector<std::string> mistakes;
+  if (rank_of(comm) == 0) {
+    try {
+      check_writable(config);
+      const auto& [directory, place, interval] = config.output;
+      if (const std::string reason = try_longest_name(directory, config.name); !reason.empty())
+        mistakes.push_back(fmt::format("{}: output.directory = \"{}\": cannot write a checkpoint of \"{}\" there: {}",
+                                       place, directory, config.name, reason));
+    } catch (const InputError& error) {
+      mistakes = error.mistakes();
+    }
+  }
+  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
+}
+
+RunFiles files_of(const Case& config) { return {config.output.directory, config.name, config.resolved_text}; }
+
 template <int Dim>
 bool start_run(MPI_Comm comm, const Case& config) {
   const bool first = rank_of(comm) == 0;
-  Output output(comm, config);
+  check_output(comm, config);
+  Output output(comm, files_of(config));
   if (first && output.removed() > 0)
     fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
   auto simulation = make_simulation<Dim>(comm, config);
@@ -241,7 +262,8 @@ std::shared_ptr<Simulation<Dim>> restored(MPI_Comm comm, const Case& config, con
 template <int Dim>
 bool go_on(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation) {
   const StepReport& report = simulation.report();
-  Output output(comm, config, report.step);
+  check_output(comm, config);
+  Output output(comm, files_of(config), report.step);
   if (rank_of(comm) == 0)
     fmt::print("impinge {}: {} from step {}, t = {:.6g} s, to t = {} s with {} particles on {} rank(s), output in {}\n",
                IMPINGE_VERSION, config.name, report.step, report.time, config.time.end, report.particles,

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "impinge/core/errors.hpp"
+#include "impinge/io/run_directory.hpp"
 
 namespace impinge {
 namespace {
@@ -189,7 +190,7 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
   result.analytic_film_h1 = comparison.analytic_film(Side::h1);
   result.analytic_film_h2 = comparison.analytic_film(Side::h2);
 
-  if (const auto stock = last_stock((fs::path(directory) / (config.name + "_history.csv")).string())) {
+  if (const auto stock = last_stock(history_path(directory, config.name))) {
     std::int64_t stored = stock->fluid;
     if (stock->step == result.last.step) {
       read_snapshot(MPI_COMM_SELF, result.last_path, particles);

@@ -128,7 +128,7 @@ TEST_F(MalformedSnapshot, TruncatedAnywhere) {
   const auto size = fs::file_size(sound());
   for (const std::uintmax_t kept : {std::uintmax_t{0}, std::uintmax_t{1}, std::uintmax_t{8}}) {
     expect_refused([&] { fs::copy_file(sound(), file()), fs::resize_file(file(), kept); },
-                   kept < 8 ? "not an HDF5 file" : "not a snapshot of Impinge");
+                   kept < 8 ? "not an HDF5 file" : "not a file of Impinge");
   }
   for (const std::uintmax_t kept : {std::uintmax_t{9}, std::uintmax_t{48}, size / 4, size / 2, size - 4096, size - 1})
     expect_refused([&] { fs::copy_file(sound(), file()), fs::resize_file(file(), kept); }, "");
@@ -165,7 +165,7 @@ TEST_F(MalformedSnapshot, FilesOfOthers) {
           H5Fclose(id);
           H5Pclose(access);
         },
-        "not a snapshot of Impinge");
+        old ? "not a file of Impinge" : "not a snapshot of Impinge");
   }
   expect_refused_after(replace_attribute("format_version", H5T_NATIVE_INT32, 1, 99),
                        "format version 99, but this Impinge reads version 1");

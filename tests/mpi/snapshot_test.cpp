@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 
+#include "impinge/io/run_directory.hpp"
 #include "impinge/parallel/exchange.hpp"
 #include "shared_directory.hpp"
 

@@ -220,6 +220,40 @@ class Run(System):
         array = data.GetArray("pressure")
         self.assertEqual([array.GetValue(i) for i in range(len(pressure))], list(pressure))
 
+    def test_long_paths(self):
+        tank = ROOT / "input/hydrostatic.toml"
+        words = ("--set", "tank.size=[0.06,0.06]", "--set", "tank.fluid_height=0.04", "--set", "checkpoint.steps=1",
+                 "--set", "output.average_start=0", "--set", "time.end=1e-3")
+
+        def path(length):
+            text = "/".join(["d" * 200] * (length // 201 + 1))[:length]
+            return text if text[-1] != "/" else text[:-1] + "d"
+
+        for length, ranks in ((214, 0), (256, 2), (1000, 0), (3000, 2)):
+            done = impinge(tank, *words, "--set", f"output.directory={path(length)}", cwd=self.directory, ranks=ranks)
+            self.assertEqual(done.returncode, 0, f"{length}: {done.stderr}")
+            done = impinge("--restart", path(length), "--set", "time.end=2e-3", cwd=self.directory, ranks=ranks)
+            self.assertEqual(done.returncode, 0, f"{length}: {done.stderr}")
+            self.assertEqual(len(list((self.directory / path(length)).glob("*.checkpoint"))), 2)
+        for length in (4060, 5000):  # for the files, or for the directory itself
+            done = impinge(tank, *words, "--set", f"output.directory={path(length)}", cwd=self.directory, ranks=2)
+            self.assertEqual(done.returncode, 2, f"{length}: {done.stderr}")
+            self.assertIn("File name too long", done.stderr)
+
+    def test_the_series_is_xml_whatever_the_name(self):
+        tank = ROOT / "input/hydrostatic.toml"
+        for name in ("A&B <1>", 'a"b\'c', "&amp;", "]]>"):
+            done = impinge(tank, "--set", "tank.size=[0.06,0.06]", "--set", "tank.fluid_height=0.04", "--set",
+                           "output.average_start=0", "--set", "time.end=1e-3", "--set", "output.directory=out",
+                           "--set", f"name={json.dumps(name)}", cwd=self.directory)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            series = xml.etree.ElementTree.parse(self.directory / f"out/{name}.xmf")
+            self.assertEqual({grid.get("Name") for grid in series.iter("Grid")}, {None, name})
+            for item in series.iter("DataItem"):
+                file, path = item.text.split(":")
+                with h5py.File(self.directory / "out" / file) as snapshot:
+                    self.assertIn(path, snapshot)
+
     def test_divergence_is_exit_3_with_a_last_state_that_the_post_processing_opens(self):
         done = impinge(ROOT / "input/paper/jet60-A1.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=8e-4",
                        "--set", "time.max_speed=6", "--set", "output.directory=out", cwd=self.directory, ranks=2)
@@ -289,7 +323,7 @@ class Run(System):
             (sound[:100], ""),
             (sound[: len(sound) // 2], ""),
             (sound[:-1], ""),
-            ((self.directory / "foreign.h5").read_bytes(), "not a snapshot of Impinge"),
+            ((self.directory / "foreign.h5").read_bytes(), "not a file of Impinge"),
         ):
             last.write_bytes(text)
             done = call(BIN / "impinge-validate", "out", "--no-figures", cwd=self.directory)

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "impinge/observe/history.hpp"
 #include "impinge/programs/case.hpp"
 
 namespace impinge {
@@ -77,7 +78,7 @@ TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
 
 TEST(CommandLine, PrintsVersionAndKeys) {
   EXPECT_EQ(parse_command_line({"--version"}).text, "impinge " IMPINGE_VERSION "\n");
-  EXPECT_EQ(parse_command_line({"--describe"}).text, describe_keys());
+  EXPECT_EQ(parse_command_line({"--describe"}).text, describe_keys() + "\n" + describe_history());
 }
 
 TEST(CommandLine, FindsMistakes) {

@@ -19,6 +19,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "impinge/io/run_directory.hpp"
+
 namespace impinge {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "impinge/method/simulation.hpp"
+#include "impinge/method/step_report.hpp"
 
 namespace impinge {
 

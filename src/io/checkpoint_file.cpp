@@ -1,0 +1,101 @@
+#include "impinge/io/checkpoint_file.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <optional>
+
+#include "impinge/io/snapshot_layout.hpp"
+#include "impinge/io/together.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr const char* checkpoint_group = "/checkpoint";
+
+std::string path_in_group(const char* name) { return fmt::format("{}/{}", checkpoint_group, name); }
+
+}  // namespace
+
+template <int Dim>
+void write_checkpoint(MPI_Comm comm, const std::string& path, const Checkpoint<Dim>& state,
+                      const SnapshotHeader& header) {
+  Hdf5Writer file(comm, path, true);
+  write_state(file, rank_of(comm), state.particles, header);
+  file.create_group(checkpoint_group);
+  for (const auto& [name, value] : state.numbers) file.attribute(checkpoint_group, name.c_str(), value);
+  file.dataset(path_in_group("searched_position"), to_numbers(state.searched_position, state.particles.owned), 3, "m");
+  file.dataset(path_in_group("cell_owner"), rank_of(comm) == 0 ? state.owner : std::vector<int>{});
+  const CoarseRows& coarse = state.coarse;
+  const auto write_size = [&](const char* name, std::size_t size) {
+    file.dataset(path_in_group(name), std::vector{static_cast<std::int64_t>(size)});
+  };
+  write_size("coarse_rows", coarse.cell.size());
+  write_size("coarse_entries", coarse.column.size());
+  file.dataset(path_in_group("coarse_cell"), coarse.cell);
+  file.dataset(path_in_group("coarse_length"), coarse.length);
+  file.dataset(path_in_group("coarse_column"), coarse.column);
+  file.dataset(path_in_group("coarse_value"), coarse.value);
+  file.finish();
+}
+
+template <int Dim>
+Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
+  std::optional<StateReader> file;
+  std::vector<std::int64_t> pieces;
+  std::int64_t all = 0;
+  Checkpoint<Dim> state;
+  together(comm, [&] {
+    file.emplace(path);
+    if (!file->has(checkpoint_group)) file->fail("a snapshot, not a checkpoint");
+    if (const int dimension = file->number<int>("dimension"); dimension != Dim)
+      file->fail(fmt::format("it has {} dimensions, not {}", dimension, Dim));
+    state.numbers = file->numbers(checkpoint_group);
+    pieces = file->checked_whole<std::int64_t>("/VTKHDF/NumberOfPoints");
+    all = file->rows(points_path);
+    if (std::accumulate(pieces.begin(), pieces.end(), std::int64_t{0}) != all)
+      file->fail("the ranks' numbers of particles do not make the whole");
+  });
+
+  const int rank = rank_of(comm);
+  const auto ranks = static_cast<std::int64_t>(ranks_of(comm));
+  const bool own_parts = static_cast<std::int64_t>(pieces.size()) == ranks;
+  // Where a rank's part of an array of one piece per rank begins.
+  const auto before = [&](const std::vector<std::int64_t>& sizes) {
+    return std::accumulate(sizes.begin(), sizes.begin() + rank, std::int64_t{0});
+  };
+  const std::int64_t first = own_parts ? before(pieces) : all * rank / ranks;
+  const std::int64_t count = own_parts ? pieces[static_cast<std::size_t>(rank)] : all * (rank + 1) / ranks - first;
+  const auto share = [&]<class Number>(const std::string& dataset, int columns) {
+    return file->checked_dataset<Number>(comm, dataset, first, count, columns);
+  };
+  together(comm, [&] { state.particles = file->particles<Dim>(count, share); });
+  state.searched_position =
+      to_values<Vector<Dim>>(share.template operator()<double>(path_in_group("searched_position"), 3));
+  if (!own_parts) return state;
+
+  std::vector<std::int64_t> rows, entries;
+  together(comm, [&] {
+    state.owner = file->checked_whole<int>(path_in_group("cell_owner"));
+    rows = file->checked_whole<std::int64_t>(path_in_group("coarse_rows"));
+    entries = file->checked_whole<std::int64_t>(path_in_group("coarse_entries"));
+    if (rows.size() != pieces.size() || entries.size() != pieces.size())
+      file->fail("its parts are of different numbers of ranks");
+  });
+  const auto part = [&]<class T>(const char* dataset, const std::vector<std::int64_t>& sizes, std::vector<T>& values) {
+    values =
+        file->checked_dataset<T>(comm, path_in_group(dataset), before(sizes), sizes[static_cast<std::size_t>(rank)]);
+  };
+  part("coarse_cell", rows, state.coarse.cell);
+  part("coarse_length", rows, state.coarse.length);
+  part("coarse_column", entries, state.coarse.column);
+  part("coarse_value", entries, state.coarse.value);
+  return state;
+}
+
+template void write_checkpoint(MPI_Comm, const std::string&, const Checkpoint<2>&, const SnapshotHeader&);
+template void write_checkpoint(MPI_Comm, const std::string&, const Checkpoint<3>&, const SnapshotHeader&);
+template Checkpoint<2> read_checkpoint(MPI_Comm, const std::string&);
+template Checkpoint<3> read_checkpoint(MPI_Comm, const std::string&);
+
+}  // namespace impinge
