@@ -2,13 +2,14 @@
 
 #include "impinge/method/pressure/two_level.hpp"
 #include "impinge/parallel/decomposition.hpp"
+#include "impinge/particles/fields.hpp"
 
 namespace impinge {
 
 template <int Dim>
 std::size_t bytes_per_particle() {
-  return 2 * (sizeof(ParticleRecord<Dim>) + sizeof(double) + sizeof(std::uint8_t)) + sizeof(PressureRole) +
-         2 * sizeof(double) + 5 * sizeof(Vector<Dim>) + sizeof(Matrix<Dim>) + sizeof(PetscInt);
+  return 2 * field_bytes<Dim> + sizeof(PressureRole) + 2 * sizeof(double) + 5 * sizeof(Vector<Dim>) +
+         sizeof(Matrix<Dim>) + sizeof(PetscInt);
 }
 
 template <int Dim>
