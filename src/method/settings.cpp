@@ -30,6 +30,15 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("fluid.density", s.fluid.density, "density rho", {.unit = "kg/m^3", .range = positive, .fixed = true});
   keys.add("fluid.viscosity", s.fluid.viscosity, "kinematic viscosity nu", {.unit = "m^2/s", .range = not_negative});
   keys.add("fluid.gravity", s.fluid.gravity, "gravity; the last component is the vertical one", {.unit = "m/s^2"});
+  keys.add("fluid.central_force", s.fluid.central_force, "B of a force per mass -B^2 (r - fluid.force_center)",
+           {.unit = "1/s", .range = not_negative});
+  keys.add("fluid.force_center", s.fluid.force_center, "centre of that force", {.unit = "m"});
+  keys.list("fluid.gravity_at", s.fluid.gravity_at,
+            "gravity at a time, instead of fluid.gravity; linear between the times, constant before and after", {},
+            [](Keys& inner, GravityEntry& entry) {
+              inner.add("time", entry.time, "time", {.unit = "s", .required = true});
+              inner.add("value", entry.value, "gravity at this time", {.unit = "m/s^2", .required = true});
+            });
 
   keys.add("particles.spacing", s.particles.spacing, "particle spacing dp",
            {.unit = "m", .range = positive, .required = true, .fixed = true});
@@ -64,6 +73,10 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("walls.model", s.walls.model,
            "mirror: the fluid's mirror images; particles: wall particles, and ghosts without a pressure",
            {.fixed = true});
+
+  keys.add(
+      "domain.outside", s.outside,
+      "remove: fluid that leaves the bounds other than by an outlet is removed and counted; error: it ends the run");
 
   keys.add("free_surface.surface_density", s.free_surface.surface_density,
            "a particle of smaller number density is on the free surface", {.unit = "n0", .range = from_to(0, 1)});
@@ -100,10 +113,12 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("time.mean_velocity", s.time.mean_velocity,
            "in a step, particles move with the mean of their old and their new velocity, not with the new "
            "one");
-  keys.add("time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
-           {.unit = "m/s",
-            .range = positive,
-            .fallback = "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height) or periodic_box.shear_speed"});
+  keys.add(
+      "time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
+      {.unit = "m/s",
+       .range = positive,
+       .fallback =
+           "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height), periodic_box.shear_speed or that of the regions"});
 
   for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
     std::string& text = keys.of(setting).about.fallback;
@@ -127,6 +142,11 @@ void check_method(Keys& keys, const MethodSettings& s) {
   if (keys.usable(s.kernel.radius, s.kernel.laplacian_radius) && s.kernel.radius > s.kernel.laplacian_radius) {
     keys.mistake(s.kernel.radius, fmt::format("larger than the Laplacian's radius; allowed: (1, {}] (dp)",
                                               number_text(s.kernel.laplacian_radius)));
+  }
+  for (std::size_t k = 1; k < s.fluid.gravity_at.size(); ++k) {
+    const GravityEntry &before = s.fluid.gravity_at[k - 1], &here = s.fluid.gravity_at[k];
+    if (keys.usable(before.time, here.time) && here.time <= before.time)
+      keys.mistake(here.time, fmt::format("the times do not rise; allowed: > {} (s)", number_text(before.time)));
   }
   const FreeSurfaceSettings& surface = s.free_surface;
   if (keys.usable(surface.surface_density, surface.interior_density) &&

@@ -44,7 +44,6 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const MethodSettings& settings, Scene
     : comm_(comm),
       settings_(settings),
       scene_(std::move(scene)),
-      force_(settings.fluid),
       state_(make_state(comm, settings, scene_)),
       projection_(comm, settings_, state_.decomposition.cells()) {
   if (checkpoint) {
@@ -78,19 +77,24 @@ void Simulation<Dim>::step() {
 template <int Dim>
 void Simulation<Dim>::try_step() {
   ++report_.step;
-  choose_time_step(settings_.time, settings_.particles.spacing, report_);
+  const double spacing = settings_.particles.spacing;
+  const double acceleration = BodyForce<Dim>(settings_.fluid, report_.time).largest(comm_, state_.particles);
+  choose_time_step(settings_.time, spacing, acceleration, report_);
+  const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
+  // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
+  const double reference_speed = std::sqrt(acceleration * spacing);
   {
     const PhaseLog log(Phase::predict);
-    accelerate(rule, force_, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
-    collide(settings_.collision, settings_.particles.spacing, report_.dt, state_);
+    accelerate(rule, force, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
+    collide(settings_.collision, spacing, report_.dt, state_);
     advance(report_.dt, state_.particles);
   }
   pass_boundaries();
   redistribute();
   find_neighbours();
-  solve_pressure();
-  correct(rule);
+  solve_pressure(force, reference_speed);
+  correct(rule, reference_speed);
   report_.time += report_.dt;
   measure_totals();
 }
@@ -194,11 +198,6 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
 }
 
 template <int Dim>
-double Simulation<Dim>::reference_speed() const {
-  return std::sqrt(force_.largest() * settings_.particles.spacing);
-}
-
-template <int Dim>
 void Simulation<Dim>::pass_boundaries() {
   const PhaseLog log(Phase::redistribute);
   Particles<Dim>& particles = state_.particles;
@@ -224,9 +223,13 @@ void Simulation<Dim>::redistribute() {
 template <int Dim>
 void Simulation<Dim>::migrate() {
   Particles<Dim>& particles = state_.particles;
-  const std::int64_t lost = sum_over_ranks(comm_, state_.decomposition.migrate(particles));
+  const Strays strays = state_.decomposition.migrate(particles);
+  const std::int64_t lost = sum_over_ranks(comm_, strays.outside);
+  const bool is_finite = !any_rank(comm_, strays.not_finite > 0);
   report_.lost += lost;
-  if (lost > 0) fail(Phase::redistribute, fmt::format("{} particle(s) left the domain other than by an outlet", lost));
+  if (!is_finite) fail(Phase::redistribute, "a position is not a number");
+  if (lost > 0 && settings_.outside == Outside::error)
+    fail(Phase::redistribute, fmt::format("{} particle(s) left the domain other than by an outlet", lost));
   state_.decomposition.build_halo(particles);
   state_.walls.append_images(particles);
   state_.wall_normal.assign(particles.position.size(), {});
@@ -245,16 +248,16 @@ void Simulation<Dim>::find_neighbours() {
 }
 
 template <int Dim>
-void Simulation<Dim>::solve_pressure() {
+void Simulation<Dim>::solve_pressure(const BodyForce<Dim>& force, double reference_speed) {
   report_.pressure =
-      projection_.solve({.dt = report_.dt, .reference_speed = reference_speed(), .max_speed = report_.max_speed},
-                        force_, state_, report_.pressure.iterations, report_.cold_solves);
+      projection_.solve({.dt = report_.dt, .reference_speed = reference_speed, .max_speed = report_.max_speed}, force,
+                        state_, report_.pressure.iterations, report_.cold_solves);
   if (!report_.pressure.failure.empty()) fail(Phase::solve, report_.pressure.failure);
 }
 
 // u = u* - dt/rho grad p, the displacement that goes with it, and the shift.
 template <int Dim>
-void Simulation<Dim>::correct(const MotionRule& rule) {
+void Simulation<Dim>::correct(const MotionRule& rule, double reference_speed) {
   const PhaseLog log(Phase::correct);
   Particles<Dim>& particles = state_.particles;
   const std::vector<Vector<Dim>> change = projection_.velocity_change(report_.dt, state_);
@@ -263,7 +266,7 @@ void Simulation<Dim>::correct(const MotionRule& rule) {
     particles.velocity[i] += change[i];
     displacement[i] = rule.displacement(change[i]);
   }
-  const Shift<Dim> shift = shift_of(settings_.shifting, std::max(report_.max_speed, reference_speed()), report_.dt,
+  const Shift<Dim> shift = shift_of(settings_.shifting, std::max(report_.max_speed, reference_speed), report_.dt,
                                     settings_.particles.spacing, projection_.lattice().number_density, state_);
   for (std::size_t i = 0; i < change.size(); ++i) {
     particles.position[i] += displacement[i] + shift.displacement[i];

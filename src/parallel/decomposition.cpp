@@ -1,6 +1,7 @@
 #include "impinge/parallel/decomposition.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <numeric>
 #include <tuple>
@@ -143,10 +144,10 @@ bool Decomposition<Dim>::owns(const Vector<Dim>& position) const {
 }
 
 template <int Dim>
-std::int64_t Decomposition<Dim>::migrate(Particles<Dim>& particles) {
+Strays Decomposition<Dim>::migrate(Particles<Dim>& particles) {
   particles.resize(particles.owned);
   const int self = rank_of(comm_);
-  std::int64_t lost = 0;
+  Strays strays;
   std::vector<std::pair<int, int>> leaving;  // (destination, index)
   int kept = 0;
   std::vector<ParticleRecord<Dim>> packed;
@@ -155,7 +156,7 @@ std::int64_t Decomposition<Dim>::migrate(Particles<Dim>& particles) {
     record.position = cells_.wrapped(record.position);
     const int cell = cells_.cell(record.position);
     if (cell < 0) {
-      ++lost;
+      ++(std::isfinite(norm(record.position)) ? strays.outside : strays.not_finite);
       continue;
     }
     const int rank = owner_[static_cast<std::size_t>(cell)];
@@ -182,7 +183,7 @@ std::int64_t Decomposition<Dim>::migrate(Particles<Dim>& particles) {
   particles.resize(kept);
   for (const auto& record : received) particles.append(record);
   sort_along_cells(particles);
-  return lost;
+  return strays;
 }
 
 template <int Dim>

@@ -41,8 +41,8 @@ void derive(const Keys& keys, Case& c, const SceneInputs& inputs, const std::str
   if (!keys.given(c.output.directory)) c.output.directory = fmt::format("output/{}", c.name);
   c.output.directory_place = keys.place(c.output.directory);
   if (!keys.given(c.average_start)) c.average_start = 0.8 * c.time.end;
-  derive_method(keys, c, reference_speed(keys, c, inputs));
   derive_scene(keys, c, inputs);
+  derive_method(keys, c, reference_speed(keys, c, inputs));
 }
 
 void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
@@ -68,7 +68,8 @@ Case parse(const std::vector<NamedText>& files, const std::vector<std::string>& 
   Keys keys(c.dimension);
   declare(keys, c);
   if (read_files(keys, files, settings)) {
-    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel.laplacian_radius, c.fluid.gravity};
+    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel.laplacian_radius, c.fluid.gravity,
+                             c.fluid.central_force};
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }

@@ -50,6 +50,24 @@ void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) 
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 
+/// A region's name, its volume, and the relative error of its particles' volume.
+struct FluidVolume {
+  std::string name;
+  double volume;
+  double error;
+};
+
+template <int Dim>
+std::vector<FluidVolume> fluid_volumes(const Case& config) {
+  std::vector<FluidVolume> all;
+  for (const FluidRegion& region : config.regions) {
+    const PlacedRegion<Dim> placed(region, config.particles.spacing);
+    const double particles = static_cast<double>(placed.count()) * std::pow(config.particles.spacing, Dim);
+    all.push_back({region.name, placed.volume(), particles / placed.volume() - 1.0});
+  }
+  return all;
+}
+
 template <int Dim>
 void check(MPI_Comm comm, const Case& config) {
   const auto simulation = make_simulation<Dim>(comm, config);
@@ -63,8 +81,10 @@ void check(MPI_Comm comm, const Case& config) {
   const double bytes = sum_over_ranks(comm, static_cast<double>(simulation.bytes()));
   const double most = max_over_ranks(comm, static_cast<double>(simulation.bytes()));
   const double imbalance = simulation.imbalance();
+  const double acceleration = BodyForce<Dim>(config.fluid, 0.0).largest(comm, particles);
   if (rank_of(comm) > 0) return;
   const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
+  const double force_dt = config.time.cfl * std::sqrt(config.particles.spacing / acceleration);
   fmt::print("case        {}, {} dimensions: all keys are in range\n", config.name, config.dimension);
   fmt::print("particles   {}: {} fluid, {} inlet, {} wall, {} ghost\n", report.particles, counts[0], counts[1],
              counts[2], counts[3]);
@@ -73,11 +93,14 @@ void check(MPI_Comm comm, const Case& config) {
       "memory      {:.1f} MB ({:.0f} bytes per particle), {:.1f} MB on the fullest rank; preconditioner and "
       "libraries come on top\n",
       bytes / 1e6, bytes / static_cast<double>(report.particles), most / 1e6);
+  for (const auto& [name, volume, error] : fluid_volumes<Dim>(config))
+    fmt::print("fluid       {}: {:.6g} m^{}, the particles' {:+.2f} %\n", name, volume, Dim, 100.0 * error);
   fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
   if (std::isfinite(cfl_dt))
     fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
+  if (std::isfinite(force_dt)) fmt::print(", {:.3g} s (force, {:.3g} m/s^2)", force_dt, acceleration);
   fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
-             std::ceil(config.time.end / std::min(config.time.dt, cfl_dt)), config.time.end);
+             std::ceil(config.time.end / std::min({config.time.dt, cfl_dt, force_dt})), config.time.end);
   fmt::print("output      {}\n", config.output.directory);
 }
 
@@ -135,6 +158,31 @@ double next_output(double time, double interval) {
   return interval > 0.0 ? (std::floor(time / interval + 1e-9) + 1.0) * interval : HUGE_VAL;
 }
 
+/// Tells once that fluid has left the bounds, and warns once where it is a hundredth of all.
+class LossNotice {
+ public:
+  explicit LossNotice(const StepReport& report) : told_(report.lost > 0), warned_(is_much(report)) {}
+
+  void update(const StepReport& report) {
+    if (!told_ && report.lost > 0) {
+      fmt::print("step {}: {} particle(s) left the bounds and were removed; the history counts them as lost\n",
+                 report.step, report.lost);
+      told_ = true;
+    }
+    if (!warned_ && is_much(report)) {
+      fmt::print(stderr, "impinge: warning: 1 % of the fluid, {} particles, has left the bounds by t = {:.6g} s\n",
+                 report.lost, report.time);
+      warned_ = true;
+    }
+  }
+
+ private:
+  static bool is_much(const StepReport& report) { return report.lost > 0 && 100 * report.lost >= report.in; }
+
+  bool told_;
+  bool warned_;
+};
+
 /// Says after each step whether a checkpoint is due or a signal asks for the end.
 class Interruptions {
  public:
@@ -179,6 +227,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
   Interruptions interruptions(comm, config);
   bool options_checked = false;
   Progress progress(report.time, config.time.end, first);
+  LossNotice losses(report);
   while (!finished()) {
     const auto step_start = Clock::now();
     try {
@@ -195,6 +244,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
       options_checked = true;
     }
     progress.update(report);
+    if (first) losses.update(report);
     if (finished()) {
       output.save(simulation, "finished");
     } else if (report.time >= output_time - tolerance) {
@@ -214,8 +264,8 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
     }
   }
   if (first)
-    fmt::print("done: {} steps in {}, particles in - out - stored = {}\n", report.step - first_step,
-               duration_text(seconds_since(start)), report.in - report.out - report.fluid);
+    fmt::print("done: {} steps in {}, particles in - out - lost - stored = {}\n", report.step - first_step,
+               duration_text(seconds_since(start)), report.in - report.out - report.lost - report.fluid);
   return true;
 }
 

@@ -94,11 +94,17 @@ void check_jet(Keys& keys, const JetSettings& jet, const PlateSettings& plate, c
   }
 }
 
-void check_tank(Keys& keys, const TankSettings& tank, const SceneInputs& in, bool mirrored) {
+void check_tank(Keys& keys, const TankSettings& tank, const std::vector<FluidRegion>& regions, const SceneInputs& in,
+                bool mirrored) {
   const auto size = components(tank.size, in.dimension);
   if (keys.usable(tank.size)) check_count(keys, in, product(size));
   check_multiples(keys, in, tank.size, size);
-  check_multiples(keys, in, tank.fluid_height, {&tank.fluid_height, 1});
+  if (tank.fluid_height > 0.0) check_multiples(keys, in, tank.fluid_height, {&tank.fluid_height, 1});
+  if (keys.usable(tank.fluid_height, regions) && (tank.fluid_height > 0.0) == !regions.empty()) {
+    keys.mistake(tank.fluid_height, regions.empty()
+                                        ? "no fluid: neither a height nor a [[fluid.region]]; allowed: > 0 (m)"
+                                        : "the fluid is given by [[fluid.region]], too; allowed: one of the two");
+  }
   if (mirrored && keys.usable(tank.size, in.spacing, in.laplacian_radius)) {
     const double least = std::max<double>(in.laplacian_radius, wall_layers) * in.spacing;
     if (std::ranges::min(size) < least) {
@@ -125,6 +131,71 @@ void check_box(Keys& keys, const PeriodicBoxSettings& box, const SceneInputs& in
   }
 }
 
+/// The smallest box around all regions, in two or three dimensions [m].
+Box<3> bounds_of(const SceneSettings& s, const SceneInputs& in) {
+  Box<3> around;
+  const auto add = [&]<int Dim>(const Box<Dim>& box, bool first) {
+    for (int k = 0; k < Dim; ++k) {
+      around.low[k] = first ? box.low[k] : std::min(around.low[k], box.low[k]);
+      around.high[k] = first ? box.high[k] : std::max(around.high[k], box.high[k]);
+    }
+  };
+  for (const FluidRegion& region : s.regions) {
+    if (!has_shape(region, in.dimension)) continue;
+    if (in.dimension == 2) add(PlacedRegion<2>(region, in.spacing).bounds(), &region == &s.regions.front());
+    if (in.dimension == 3) add(PlacedRegion<3>(region, in.spacing).bounds(), &region == &s.regions.front());
+  }
+  return around;
+}
+
+double longest_side(const Box<3>& box) {
+  const Vector<3> size = box.high - box.low;
+  return std::max({size[0], size[1], size[2]});
+}
+
+/// The fastest start, and a fall over the fluid's longest side [m/s].
+double region_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in, double gravity) {
+  if (!keys.usable(in.dimension, in.spacing)) return 0.0;
+  const double side = longest_side(bounds_of(s, in));
+  double fastest = 0.0;
+  for (const FluidRegion& region : s.regions) {
+    double rate = std::abs(region.spin);
+    for (const double slope : region.gradient) rate = std::max(rate, std::abs(slope));
+    fastest = std::max(fastest, std::hypot(region.velocity[0], region.velocity[1], region.velocity[2]) + rate * side);
+  }
+  const double pull = in.central_force * in.central_force * side;
+  return std::sqrt(fastest * fastest + 2.0 * (gravity + pull) * side);
+}
+
+void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
+  if (!keys.usable(in.dimension, in.spacing)) return;
+  const Box<3> fluid = bounds_of(s, in);
+  const double margin = longest_side(fluid);
+  for (int k = 0; k < in.dimension; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    if (!keys.given(s.domain.low)) s.domain.low[axis] = fluid.low[k] - margin;
+    if (!keys.given(s.domain.high)) s.domain.high[axis] = fluid.high[k] + margin;
+  }
+}
+
+void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  if (!keys.usable(s.regions, s.domain.low, s.domain.high)) return;
+  if (s.regions.empty()) {
+    keys.mistake(s.geometry, "no fluid; allowed: at least one [[fluid.region]]");
+    return;
+  }
+  if (!keys.usable(in.dimension, in.spacing)) return;
+  double volume = 1.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(in.dimension); ++k) {
+    volume *= s.domain.high[k] - s.domain.low[k];
+    if (s.domain.high[k] - s.domain.low[k] > 2.0 * in.spacing) continue;
+    keys.mistake(s.domain.high, fmt::format("the bounds are narrower than two particles; allowed: above {} (m)",
+                                            number_text(s.domain.low[k] + 2.0 * in.spacing)));
+    return;
+  }
+  check_count(keys, in, volume);
+}
+
 }  // namespace
 
 void declare_scenes(Keys& keys, SceneSettings& s) {
@@ -147,8 +218,9 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
   keys.only_where(s.geometry, {SceneType::tank}, [&] {
     keys.add("tank.size", s.tank.size, "inner lengths, multiples of dp; the last is the height of the walls",
              {.unit = "m", .range = positive, .required = true, .fixed = true});
-    keys.add("tank.fluid_height", s.tank.fluid_height, "height of the fluid at rest, a multiple of dp",
-             {.unit = "m", .range = positive, .required = true, .fixed = true});
+    keys.add("tank.fluid_height", s.tank.fluid_height,
+             "height of the fluid at rest, a multiple of dp; 0: the fluid is that of [[fluid.region]]",
+             {.unit = "m", .range = not_negative, .fixed = true});
   });
   keys.only_where(s.geometry, {SceneType::periodic_box}, [&] {
     keys.add("periodic_box.size", s.periodic_box.size, "periods, multiples of dp",
@@ -157,16 +229,26 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
              "amplitude U of the initial velocity u_x = U sin(2 pi y / L_y)",
              {.unit = "m/s", .range = not_negative, .fixed = true});
   });
+  keys.only_where(s.geometry, {SceneType::scene}, [&] {
+    keys.add("domain.low", s.domain.low, "corner of the bounds with the smallest coordinates",
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side below the fluid"});
+    keys.add("domain.high", s.domain.high, "corner of the bounds with the largest coordinates",
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above the fluid"});
+  });
+  keys.only_where(s.geometry, {SceneType::tank, SceneType::scene}, [&] { declare_fluid(keys, s.regions); });
 }
 
 double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   if (keys.usable(s.jet.speed)) return s.jet.speed;
-  if (keys.usable(s.tank.fluid_height, in.gravity))
-    return std::sqrt(2.0 * std::hypot(in.gravity[0], in.gravity[1], in.gravity[2]) * s.tank.fluid_height);
+  const double gravity = keys.usable(in.gravity) ? std::hypot(in.gravity[0], in.gravity[1], in.gravity[2]) : 0.0;
+  if (keys.usable(s.tank.fluid_height) && s.regions.empty()) return std::sqrt(2.0 * gravity * s.tank.fluid_height);
+  if (!s.regions.empty()) return region_speed(keys, s, in, gravity);
   return keys.usable(s.periodic_box.shear_speed) ? s.periodic_box.shear_speed : 0.0;
 }
 
 void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
+  derive_fluid(keys, in.dimension, s.regions);
+  if (s.geometry == SceneType::scene && !s.regions.empty()) derive_domain(keys, s, in);
   if (!keys.usable(s.jet.width, s.jet.angle, in.spacing)) return;
   const auto [low, high, thin, thick] = reach_of(s.jet);
   const double width = s.jet.width;
@@ -178,13 +260,16 @@ void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
 
 void check_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in, bool mirrored) {
   if (!keys.usable(s.geometry)) return;
+  if (keys.usable(in.dimension, in.spacing)) check_fluid(keys, in.dimension, in.spacing, s.regions);
   switch (s.geometry) {
     case SceneType::jet:
       return check_jet(keys, s.jet, s.plate, in);
     case SceneType::tank:
-      return check_tank(keys, s.tank, in, mirrored);
+      return check_tank(keys, s.tank, s.regions, in, mirrored);
     case SceneType::periodic_box:
       return check_box(keys, s.periodic_box, in);
+    case SceneType::scene:
+      return check_open_scene(keys, s, in);
   }
 }
 

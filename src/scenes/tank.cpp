@@ -30,7 +30,7 @@ int wall_side(const Vector<Dim>& position, const Vector<Dim>& size, double spaci
 }  // namespace
 
 template <int Dim>
-Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank) {
+Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank, const std::vector<FluidRegion>& regions) {
   const bool mirror = method.walls.model == WallModel::mirror;
   const double fluid_height = tank.fluid_height;
   BoxLattice<Dim> lattice{.spacing = method.particles.spacing};
@@ -56,6 +56,8 @@ Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank) {
     if (k < Dim - 1) scene.mirrors.push_back(high);
   }
 
+  const std::vector<PlacedRegion<Dim>> fluid = placed<Dim>(regions, lattice.spacing);
+  scene.next_id = lattice.count() + count_points(fluid);
   scene.fill = [=](int rank, int ranks, Particles<Dim>& particles) {
     for_share(lattice.count(), rank, ranks, [&](std::int64_t k) {
       Vector<Dim> position = lattice.point(k);
@@ -70,6 +72,10 @@ Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank) {
           position[axis] = std::clamp(position[axis], 0.0, std::nextafter(size[axis], 0.0));
       particles.append({position, {}, 0.0, 0.0, k, type});
     });
+    const auto is_inside = [&](const Vector<Dim>& position) {
+      return depth_in_walls(position, size) == 0.0 && position[Dim - 1] < size[Dim - 1];
+    };
+    fill_regions<Dim>(fluid, lattice.count(), rank, ranks, is_inside, particles);
   };
   scene.wall_normal = [=, spacing = lattice.spacing](const Vector<Dim>& position) {
     Vector<Dim> normal;
@@ -84,7 +90,7 @@ Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank) {
   return scene;
 }
 
-template Scene<2> make_tank(const MethodSettings&, const TankSettings&);
-template Scene<3> make_tank(const MethodSettings&, const TankSettings&);
+template Scene<2> make_tank(const MethodSettings&, const TankSettings&, const std::vector<FluidRegion>&);
+template Scene<3> make_tank(const MethodSettings&, const TankSettings&, const std::vector<FluidRegion>&);
 
 }  // namespace impinge

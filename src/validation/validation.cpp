@@ -52,7 +52,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// Particle counts in a line of the history.
 struct Stock {
-  std::int64_t step, in, out, fluid;
+  std::int64_t step, in, out, lost, fluid;
 };
 
 /// The last line of a history; nothing without a file or without a line. Throws FileError.
@@ -76,7 +76,7 @@ std::optional<Stock> last_stock(const std::string& path) {
     }
     throw FileError(fmt::format("cannot read {}: the last line has no whole number in the column '{}'", path, name));
   };
-  return Stock{number("step"), number("in"), number("out"), number("fluid")};
+  return Stock{number("step"), number("in"), number("out"), number("lost"), number("fluid")};
 }
 
 std::int64_t count_fluid(const Particles<2>& particles) {
@@ -196,7 +196,7 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
       read_snapshot(MPI_COMM_SELF, result.last_path, particles);
       stored = count_fluid(particles);
     }
-    result.particle_balance = stock->in - stock->out - stored;
+    result.particle_balance = stock->in - stock->out - stock->lost - stored;
   }
   return result;
 }
@@ -268,7 +268,7 @@ std::string to_table(const Validation& validation) {
     row(key.name, value ? fmt::format("{:.4g}", *value) : "-", key.meaning);
   }
   row("particle_balance", validation.particle_balance ? fmt::format("{}", *validation.particle_balance) : "-",
-      "particles in minus out minus stored");
+      "particles in minus out, lost and stored");
   return table;
 }
 

@@ -90,7 +90,7 @@ class Distributed {
     for_share(static_cast<std::int64_t>(n_), rank_of(comm), ranks_of(comm),
               [&](std::int64_t k) { particles_.append(problem.particles.record(static_cast<int>(k))); });
     decomposition_.partition(particles_);
-    EXPECT_EQ(decomposition_.migrate(particles_), 0);
+    EXPECT_EQ(decomposition_.migrate(particles_).outside, 0);
     decomposition_.build_halo(particles_);
     for (const auto id : particles_.id) role_.push_back(problem.role[static_cast<std::size_t>(id)]);
     walls_.append_images(particles_);

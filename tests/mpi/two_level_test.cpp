@@ -51,7 +51,7 @@ class Cloud {
       particles_.append(record);
     });
     decomposition_.partition(particles_);
-    EXPECT_EQ(decomposition_.migrate(particles_), 0);
+    EXPECT_EQ(decomposition_.migrate(particles_).outside, 0);
     decomposition_.build_halo(particles_);
     search_.search(particles_);
     for (const auto& position : particles_.position) role_.push_back(role_at(position));

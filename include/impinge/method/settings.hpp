@@ -9,15 +9,26 @@ namespace impinge {
 
 enum class Scheme { consistent, paper };
 enum class WallModel { mirror, particles };
+enum class Outside { remove, error };
 
 constexpr auto words(Scheme) { return std::to_array<std::string_view>({"consistent", "paper"}); }
 constexpr auto words(WallModel) { return std::to_array<std::string_view>({"mirror", "particles"}); }
+constexpr auto words(Outside) { return std::to_array<std::string_view>({"remove", "error"}); }
 constexpr auto words(KernelType) { return std::to_array<std::string_view>({"non_singular", "singular"}); }
 
+/// An entry of the table of gravity in time.
+struct GravityEntry {
+  double time = 0.0;  ///< [s]
+  Numbers value{};    ///< [m/s^2]
+};
+
 struct FluidSettings {
-  double density = 1000.0;  ///< [kg/m^3]
-  double viscosity = 0.0;   ///< kinematic [m^2/s]
-  Numbers gravity{};        ///< [m/s^2]
+  double density = 1000.0;               ///< [kg/m^3]
+  double viscosity = 0.0;                ///< kinematic [m^2/s]
+  Numbers gravity{};                     ///< [m/s^2]
+  std::vector<GravityEntry> gravity_at;  ///< instead of gravity: linear in time between the entries
+  double central_force = 0.0;            ///< B of the force per mass -B^2 (r - center) [1/s]
+  Numbers force_center{};                ///< its centre [m]
 };
 
 struct ParticleSettings {
@@ -84,13 +95,15 @@ struct MethodSettings {
   ShiftingSettings shifting;
   TimeSettings time;
   ParallelSettings parallel;
-  double average_start = 0.0;  ///< start of the wall-pressure average [s]; key output.average_start
+  Outside outside = Outside::remove;  ///< what happens to fluid that leaves the bounds; key domain.outside
+  double average_start = 0.0;         ///< start of the wall-pressure average [s]; key output.average_start
 };
 
 /// Least edge of a run's background cells [m]: the Laplacian's radius.
 inline double least_cell_edge(const MethodSettings& settings) {
   return settings.kernel.laplacian_radius * settings.particles.spacing;
 }
+
 /// Declares dimension, scheme and the tables from [fluid] to [time].
 void declare_method(Keys& keys, MethodSettings& settings);
 

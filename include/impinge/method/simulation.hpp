@@ -63,8 +63,8 @@ class Simulation {
   void redistribute();
   void migrate();
   void find_neighbours();
-  void solve_pressure();
-  void correct(const MotionRule& rule);
+  void solve_pressure(const BodyForce<Dim>& force, double reference_speed);
+  void correct(const MotionRule& rule, double reference_speed);
   void measure_totals();
 
   void save(Checkpoint<Dim>& state) const;
@@ -73,16 +73,11 @@ class Simulation {
   static void for_numbers(StepReport& report, AveragingWindow& window, std::vector<Inlet<Dim>>& inlets,
                           std::int64_t& next_id, Use&& use);
 
-  /// Lowest reference speed of shifting and density correction [m/s]: free fall over one spacing. Keeps both active in
-  /// water at rest.
-  double reference_speed() const;
-
   [[noreturn]] void fail(Phase phase, const std::string& reason) const;
 
   MPI_Comm comm_;
   MethodSettings settings_;
   Scene<Dim> scene_;  // its inlets move
-  BodyForce<Dim> force_;
   State<Dim> state_;
   Projection<Dim> projection_;
   StepReport report_;

@@ -9,8 +9,8 @@
 namespace impinge {
 
 /// What bounds the time step.
-enum class StepLimit { case_dt, cfl, growth, retry };
-inline constexpr std::array step_limit_names{"case", "CFL", "growth", "retry"};
+enum class StepLimit { case_dt, cfl, growth, retry, force };
+inline constexpr std::array step_limit_names{"case", "CFL", "growth", "retry", "force"};
 
 /// Totals over all ranks after a step.
 struct StepReport {

@@ -35,6 +35,12 @@ template <int Dim>
 void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner, int cell,
                          std::vector<HaloTarget<Dim>>& targets);
 
+/// Particles of this rank that have no cell.
+struct Strays {
+  std::int64_t outside = 0;     ///< outside the background grid
+  std::int64_t not_finite = 0;  ///< with a position that is not a number
+};
+
 /// Decomposition of the particles over the ranks by background cells whose edge is at least the largest effective
 /// radius. Arrays of global length exist on the cell grid only.
 template <int Dim>
@@ -83,8 +89,8 @@ class Decomposition {
 
   /// Drops the halo, moves every owned particle to the rank that owns its cell, and sorts along the cells and, within a
   /// cell, by id. Number density and free surface are not carried. Returns how many of this rank's particles were
-  /// dropped because they are outside the background grid. Collective.
-  std::int64_t migrate(Particles<Dim>& particles);
+  /// dropped because they have no cell. Collective.
+  Strays migrate(Particles<Dim>& particles);
 
   /// Appends the halo, with all that travels but the pressure impulse, and numbers the rows. Needs sorted owned
   /// particles. Collective.

@@ -17,12 +17,17 @@ Scene<Dim> make_scene(const MethodSettings& method, const SceneSettings& scene);
 /// of the analytic jet at the origin, incoming velocity U (cos a, -sin a).
 Scene<2> make_jet(const MethodSettings& method, const JetSettings& jet, const PlateSettings& plate);
 
-/// A box open at the top, partly filled with fluid at rest; the last axis is the vertical one.
+/// A box open at the top, partly filled with fluid at rest, or by regions; the last axis is the vertical one.
 template <int Dim>
-Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank);
+Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank, const std::vector<FluidRegion>& regions);
 
 /// Fluid that fills a box periodic along every axis, in a shear flow u_x = U sin(2 pi y/L_y).
 template <int Dim>
 Scene<Dim> make_periodic_box(const MethodSettings& method, const PeriodicBoxSettings& box);
+
+/// Regions of fluid and no walls.
+template <int Dim>
+Scene<Dim> make_open_scene(const MethodSettings& method, const DomainSettings& domain,
+                           const std::vector<FluidRegion>& regions);
 
 }  // namespace impinge

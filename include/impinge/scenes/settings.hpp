@@ -2,13 +2,14 @@
 // The short forms of a scene in a case file. SI units.
 
 #include "impinge/config/key.hpp"
+#include "impinge/scenes/fluid_region.hpp"
 
 namespace impinge {
 
-enum class SceneType { jet, tank, periodic_box };
+enum class SceneType { jet, tank, periodic_box, scene };
 enum class JetStart { impact, steady };
 
-constexpr auto words(SceneType) { return std::to_array<std::string_view>({"jet", "tank", "periodic_box"}); }
+constexpr auto words(SceneType) { return std::to_array<std::string_view>({"jet", "tank", "periodic_box", "scene"}); }
 constexpr auto words(JetStart) { return std::to_array<std::string_view>({"impact", "steady"}); }
 
 struct JetSettings {
@@ -26,12 +27,17 @@ struct PlateSettings {
 
 struct TankSettings {
   Numbers size{};             ///< inner lengths; the vertical one is the walls' height [m]
-  double fluid_height = 0.0;  ///< [m]
+  double fluid_height = 0.0;  ///< [m]; 0: the fluid is that of the regions
 };
 
 struct PeriodicBoxSettings {
   Numbers size{};            ///< periods [m]
   double shear_speed = 0.0;  ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
+};
+
+struct DomainSettings {
+  Numbers low{};   ///< corner of the bounds [m]
+  Numbers high{};  ///< likewise
 };
 
 /// The scene's part of a case.
@@ -41,6 +47,8 @@ struct SceneSettings {
   PlateSettings plate;
   TankSettings tank;
   PeriodicBoxSettings periodic_box;
+  DomainSettings domain;
+  std::vector<FluidRegion> regions;  ///< of a tank or a scene
 };
 
 /// The settings of other modules that a scene depends on.
@@ -49,12 +57,14 @@ struct SceneInputs {
   const double& spacing;           ///< dp [m]
   const double& laplacian_radius;  ///< [dp]
   const Numbers& gravity;          ///< [m/s^2]
+  const double& central_force;     ///< B of the force -B^2 r [1/s]
 };
 
 /// Declares the tables of the scenes. `geometry` must be declared before.
 void declare_scenes(Keys& keys, SceneSettings& settings);
 
-/// Speed of the jet, of a fall from the tank's fluid height, or of the box' shear [m/s]; 0 if it is unknown.
+/// Speed of the jet, of a fall from the tank's fluid height, of the box' shear, or of the regions' fluid [m/s]; 0 if it
+/// is unknown.
 double reference_speed(const Keys& keys, const SceneSettings& settings, const SceneInputs& inputs);
 
 /// Sets the defaults that depend on other keys: the plate's ends, from the analytic jet.
