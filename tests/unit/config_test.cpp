@@ -265,8 +265,9 @@ TEST(Case, FindsNumbersOutOfRange) {
 TEST(Case, FindsUnknownWordsAndEmptyStrings) {
   EXPECT_EQ(mistakes_in("kernel.type = \"cubic\""),
             Texts{"case.toml:1: kernel.type = \"cubic\": unknown word; allowed: \"non_singular\", \"singular\""});
-  EXPECT_EQ(mistakes_in("geometry = \"pipe\""),
-            Texts{"case.toml:1: geometry = \"pipe\": unknown word; allowed: \"jet\", \"tank\", \"periodic_box\""});
+  EXPECT_EQ(
+      mistakes_in("geometry = \"pipe\""),
+      Texts{"case.toml:1: geometry = \"pipe\": unknown word; allowed: \"jet\", \"tank\", \"periodic_box\", \"scene\""});
   EXPECT_EQ(mistakes_in("output.directory = \"\""),
             Texts{"case.toml:1: output.directory = \"\": empty; allowed: not empty"});
   EXPECT_EQ(mistakes_in("name = \"a/b\"").size(), 1u);
@@ -318,7 +319,7 @@ TEST(Case, FindsMissingKeys) {
   EXPECT_EQ(mistakes([] {
               parse_case({{"case.toml", ""}});
             }).front(),
-            "case.toml: geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\"");
+            "case.toml: geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\", \"scene\"");
 }
 
 TEST(Case, FindsWhatIsNotToml) {
@@ -711,7 +712,7 @@ TEST_F(CaseFiles, FilesThatCannotBeReadAreMistakes) {
 TEST_F(CaseFiles, AnEmptyFileLacksItsKeys) {
   const std::string file = write("case.toml", "");
   EXPECT_EQ(mistakes([&] { parse_case(load_case_files(file)); }).at(0),
-            file + ": geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\"");
+            file + ": geometry: required key is missing; allowed: \"jet\", \"tank\", \"periodic_box\", \"scene\"");
 }
 
 TEST_F(CaseFiles, AMissingIncludeComesWithTheOtherMistakes) {

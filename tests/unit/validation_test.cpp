@@ -382,7 +382,7 @@ TEST_F(RunDirectory, BalanceIsTheHistorysAgainstTheLastSnapshot) {
   EXPECT_EQ(validate(directory).particle_balance.value(), 3);
   write_history(step + 1, 20, 4, 15);  // of another step: the history's own count
   EXPECT_EQ(validate(directory).particle_balance.value(), 1);
-  std::ofstream(directory + "/" + config.name + "_history.csv") << "step,in,out\n1,2,3\n";
+  std::ofstream(directory + "/" + config.name + "_history.csv") << "step,in,out,lost\n1,2,3,0\n";
   EXPECT_NE(error_of<FileError>().find("'fluid'"), std::string::npos);
 }
 
