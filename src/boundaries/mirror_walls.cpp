@@ -57,9 +57,9 @@ void MirrorWalls<Dim>::confine(Particles<Dim>& particles, double spacing) const 
     if (particles.type[i] != ParticleType::fluid) continue;
     for (const Face<Dim>& face : faces_) {
       const double depth = -face.distance(particles.position[i]);
-      if (!(depth > 0.0)) continue;
+      if (!(depth >= 0.0)) continue;
       particles.position[i] += 2.0 * std::max(depth, 0.5 * (depth + least_gap * spacing)) * face.normal;
-      particles.velocity[i] -= 2.0 * dot(particles.velocity[i], face.normal) * face.normal;
+      if (depth > 0.0) particles.velocity[i] -= 2.0 * dot(particles.velocity[i], face.normal) * face.normal;
     }
   }
 }

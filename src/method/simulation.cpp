@@ -228,7 +228,8 @@ void Simulation<Dim>::migrate() {
   const bool is_finite = !any_rank(comm_, strays.not_finite > 0);
   report_.lost += lost;
   if (!is_finite) fail(Phase::redistribute, "a position is not a number");
-  if (lost > 0 && settings_.outside == Outside::error)
+  const bool is_fatal = settings_.outside == Outside::error || report_.step == 0;  // a scene fits into its bounds
+  if (lost > 0 && is_fatal)
     fail(Phase::redistribute, fmt::format("{} particle(s) left the domain other than by an outlet", lost));
   state_.decomposition.build_halo(particles);
   state_.walls.append_images(particles);

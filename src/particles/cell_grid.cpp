@@ -7,7 +7,7 @@ namespace impinge {
 
 template <int Dim>
 CellGrid<Dim>::CellGrid(const Box<Dim>& box, const std::array<bool, Dim>& periodic, double smallest_edge)
-    : low_(box.low), periodic_(periodic) {
+    : low_(box.low), high_(box.high), periodic_(periodic) {
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const double length = box.high[k] - box.low[k];
@@ -40,11 +40,18 @@ Vector<Dim> CellGrid<Dim>::in_edges(const Vector<Dim>& position) const {
   return at;
 }
 
+// Along one axis; a whole number, or none. Beyond the box they go on.
+template <int Dim>
+double CellGrid<Dim>::axis_cell(const Vector<Dim>& position, int k) const {
+  const double at = std::floor((position[k] - low_[k]) / edge_[k]);
+  const double last = extent_[static_cast<std::size_t>(k)] - 1.0;
+  return at > last && position[k] < high_[k] ? last : at;
+}
+
 template <int Dim>
 std::array<int, Dim> CellGrid<Dim>::coordinates(const Vector<Dim>& position) const {
-  const Vector<Dim> in_edges = this->in_edges(position);
   std::array<int, Dim> at;
-  for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = static_cast<int>(std::floor(in_edges[k]));
+  for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = static_cast<int>(axis_cell(position, k));
   return at;
 }
 
@@ -64,7 +71,7 @@ int CellGrid<Dim>::cell(const Vector<Dim>& position) const {
   int index = 0;
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
-    const double at = std::floor((position[k] - low_[k]) / edge_[k]);
+    const double at = axis_cell(position, k);
     if (!(at >= 0.0 && at < extent_[axis])) return -1;
     index = index * extent_[axis] + static_cast<int>(at);
   }

@@ -122,6 +122,25 @@ TYPED_TEST(CellGrids, WrappedPositionsAreInside) {
   EXPECT_EQ(this->make(false).wrapped(this->point(-1.25, 3.0)), this->point(-1.25, 3.0));
 }
 
+// Wall particles stand as near to the high end as numbers can be.
+TYPED_TEST(CellGrids, PositionsBelowTheHighEndHaveACellInAnyBox) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(0.1, 10.0);
+  for (int trial = 0; trial < 2000; ++trial) {
+    Box<TestFixture::Dim> box;
+    for (int k = 0; k < TestFixture::Dim; ++k) {
+      box.low[k] = trial % 2 == 0 ? 0.0 : uniform(random) - 5.0;
+      box.high[k] = box.low[k] + uniform(random);
+    }
+    const CellGrid<TestFixture::Dim> grid(box, {}, 0.099);
+    Vector<TestFixture::Dim> position = box.high;
+    for (int k = 0; k < TestFixture::Dim; ++k) position[k] = std::nextafter(position[k], -1e9);
+    ASSERT_EQ(grid.cell(position), grid.count() - 1) << "trial " << trial;
+    ASSERT_EQ(grid.refined(2).cell(position), grid.refined(2).count() - 1) << "trial " << trial;
+    ASSERT_EQ(grid.cell(box.high), -1) << "trial " << trial;
+  }
+}
+
 // A particle that rounding puts on the very end of the period must not be lost.
 TYPED_TEST(CellGrids, WrappedPositionsHaveACellAtTheEndsOfAnyBox) {
   std::mt19937 random(5);

@@ -19,7 +19,8 @@ class CellGrid {
 
   int count() const;
 
-  /// Cell of a position, or -1 outside the box (a position that is not a number is outside).
+  /// Cell of a position, or -1 outside the box (a position that is not a number is outside). Whatever rounding does, a
+  /// position below the high end has a cell.
   int cell(const Vector<Dim>& position) const;
 
   /// The position from the low corner in units of the cells' edges [-].
@@ -42,7 +43,10 @@ class CellGrid {
   const std::array<bool, Dim>& periodic() const { return periodic_; }
 
  private:
+  double axis_cell(const Vector<Dim>& position, int k) const;
+
   Vector<Dim> low_;
+  Vector<Dim> high_;
   Vector<Dim> edge_;
   std::array<int, Dim> extent_;
   std::array<bool, Dim> periodic_;
