@@ -235,7 +235,7 @@ class Run(System):
             done = impinge("--restart", path(length), "--set", "time.end=2e-3", cwd=self.directory, ranks=ranks)
             self.assertEqual(done.returncode, 0, f"{length}: {done.stderr}")
             self.assertEqual(len(list((self.directory / path(length)).glob("*.checkpoint"))), 2)
-        for length in (4060, 5000):  # for the files, or for the directory itself
+        for length in (4060, 4090):  # for the files, or for the directory itself
             done = impinge(tank, *words, "--set", f"output.directory={path(length)}", cwd=self.directory, ranks=2)
             self.assertEqual(done.returncode, 2, f"{length}: {done.stderr}")
             self.assertIn("File name too long", done.stderr)
@@ -258,7 +258,7 @@ class Run(System):
         done = impinge(ROOT / "input/paper/jet60-A1.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=8e-4",
                        "--set", "time.max_speed=6", "--set", "output.directory=out", cwd=self.directory, ranks=2)
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-        self.assertRegex(done.stderr, r"the run failed at step \d+, phase \w+: ")
+        self.assertRegex(done.stderr, r"the run failed at step \d+, phase [\w ]+: ")
         with h5py.File(self.snapshots()[-1]) as file:
             self.assertEqual(file.attrs["status"], b"failed")
             self.assertIn(b"phase", file.attrs["message"])
@@ -272,7 +272,7 @@ class Run(System):
 
     def test_an_iteration_limit_is_a_failed_solve(self):
         done = self.run_case("-ppe_ksp_max_it", "1", code=3)
-        self.assertRegex(done.stderr, r"step 1, phase pressure: DIVERGED_ITS after 1 iterations")
+        self.assertRegex(done.stderr, r"step 1, phase PPE solve: DIVERGED_ITS after 1 iterations")
 
     def test_petsc_options_choose_the_solver(self):
         for words in (["-ppe_pc_type", "jacobi"], ["-ppe_ksp_type", "gmres", "-ppe_pc_type", "bjacobi"],
