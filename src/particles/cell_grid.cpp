@@ -36,22 +36,19 @@ int CellGrid<Dim>::count() const {
 template <int Dim>
 Vector<Dim> CellGrid<Dim>::in_edges(const Vector<Dim>& position) const {
   Vector<Dim> at;
-  for (int k = 0; k < Dim; ++k) at[k] = (position[k] - low_[k]) / edge_[k];
+  for (int k = 0; k < Dim; ++k) {
+    const double extent = extent_[static_cast<std::size_t>(k)];
+    at[k] = (position[k] - low_[k]) / edge_[k];
+    if (at[k] >= extent && position[k] < high_[k]) at[k] = std::nextafter(extent, 0.0);  // rounded up
+  }
   return at;
-}
-
-// Along one axis; a whole number, or none. Beyond the box they go on.
-template <int Dim>
-double CellGrid<Dim>::axis_cell(const Vector<Dim>& position, int k) const {
-  const double at = std::floor((position[k] - low_[k]) / edge_[k]);
-  const double last = extent_[static_cast<std::size_t>(k)] - 1.0;
-  return at > last && position[k] < high_[k] ? last : at;
 }
 
 template <int Dim>
 std::array<int, Dim> CellGrid<Dim>::coordinates(const Vector<Dim>& position) const {
+  const Vector<Dim> in_edges = this->in_edges(position);
   std::array<int, Dim> at;
-  for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = static_cast<int>(axis_cell(position, k));
+  for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = static_cast<int>(std::floor(in_edges[k]));
   return at;
 }
 
@@ -68,10 +65,11 @@ std::array<int, Dim> CellGrid<Dim>::coordinates(int cell) const {
 
 template <int Dim>
 int CellGrid<Dim>::cell(const Vector<Dim>& position) const {
+  const Vector<Dim> in_edges = this->in_edges(position);
   int index = 0;
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
-    const double at = axis_cell(position, k);
+    const double at = std::floor(in_edges[k]);
     if (!(at >= 0.0 && at < extent_[axis])) return -1;
     index = index * extent_[axis] + static_cast<int>(at);
   }

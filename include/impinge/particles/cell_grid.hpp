@@ -19,11 +19,11 @@ class CellGrid {
 
   int count() const;
 
-  /// Cell of a position, or -1 outside the box (a position that is not a number is outside). Whatever rounding does, a
-  /// position below the high end has a cell.
+  /// Cell of a position, or -1 outside the box (a position that is not a number is outside).
   int cell(const Vector<Dim>& position) const;
 
-  /// The position from the low corner in units of the cells' edges [-].
+  /// The position from the low corner in units of the cells' edges [-]; below the number of cells for every position
+  /// below the high end, whatever rounding does.
   Vector<Dim> in_edges(const Vector<Dim>& position) const;
 
   /// Integer coordinates of the cell that holds a position; beyond the box they go on, as periodic images need.
@@ -43,8 +43,6 @@ class CellGrid {
   const std::array<bool, Dim>& periodic() const { return periodic_; }
 
  private:
-  double axis_cell(const Vector<Dim>& position, int k) const;
-
   Vector<Dim> low_;
   Vector<Dim> high_;
   Vector<Dim> edge_;
