@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace impinge {
 namespace {
 
@@ -34,6 +36,12 @@ PetscSession::PetscSession(const char* program, const std::vector<std::string>& 
   char** values = pointers.data();
   petsc_check(PetscInitialize(&count, &values, nullptr, nullptr));
   petsc_check(PetscPushErrorHandler(keep_message, nullptr));
+  for (const std::string& option : unused_petsc_options()) {
+    if (std::ranges::find(arguments, option) != arguments.end()) continue;
+    PetscBool given = PETSC_FALSE;
+    petsc_check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));  // it now counts as used
+    options_from_elsewhere_.push_back(option);
+  }
 }
 
 PetscSession::~PetscSession() {

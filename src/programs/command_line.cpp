@@ -25,7 +25,8 @@ PETSc options have a single dash; the pressure solver's start with -ppe_. An opt
   -ppe_ksp_monitor                    residual of every iteration
   -log_view                           time of every phase of the step
 
-SIGTERM, SIGINT or SIGUSR1 ends a run after its step, with a checkpoint; a second SIGINT ends it at once.
+SIGTERM, SIGINT, SIGUSR1, SIGHUP and the like end a run after its step, with a checkpoint; a second SIGINT ends it at
+once. A signal that was ignored at the start (nohup) stays ignored.
 
 Exit codes: 0 done, 1 environment or bug, 2 wrong input, 3 failed solve or diverged flow, 4 ended by a signal with a
 checkpoint: --restart goes on)";

@@ -1,6 +1,7 @@
 // impinge: runs a case.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <mpi.h>
 #include <petscsys.h>
 
@@ -32,6 +33,8 @@ int run_program(int argc, char** argv) {
       return done;
     }
     const PetscSession session(argv[0], line.petsc_arguments);
+    if (const auto& others = session.options_from_elsewhere(); first && !others.empty())
+      fmt::print("PETSc options from PETSC_OPTIONS or .petscrc: {}\n", fmt::join(others, " "));
     if (!line.restart_directory.empty())
       return restart_case(comm, line.restart_directory, line.settings) ? done : stopped;
     const Case config = parse_case(load_case_files_on_first_rank(comm, line.case_path), line.settings);

@@ -20,7 +20,7 @@ int status_after(Action action) {
 }
 
 TEST(StopSignals, AreNoted) {
-  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGHUP, SIGQUIT, SIGXCPU, SIGALRM, SIGPIPE}) {
     const int status = status_after([&] {
       const StopSignals signals;
       if (StopSignals::received() != 0) return 1;
@@ -39,6 +39,28 @@ TEST(StopSignals, ASecondSigintEndsAtOnce) {
     return 0;
   });
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+}
+
+TEST(StopSignals, StayIgnoredWhereTheyWere) {
+  const int status = status_after([] {
+    std::signal(SIGHUP, SIG_IGN);
+    const StopSignals signals;
+    raise(SIGHUP);
+    return StopSignals::received();
+  });
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(StopSignals, AreNotThoseOfACrash) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS}) {
+    const int status = status_after([&] {
+      const StopSignals signals;
+      std::signal(signal, SIG_DFL);
+      raise(signal);
+      return 0;
+    });
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+  }
 }
 
 TEST(StopSignals, AreAsBeforeAtTheEnd) {

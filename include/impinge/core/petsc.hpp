@@ -41,6 +41,13 @@ class PetscSession {
   ~PetscSession();
   PetscSession(const PetscSession&) = delete;
   PetscSession& operator=(const PetscSession&) = delete;
+
+  /// Options that PETSC_OPTIONS or a .petscrc file gave, which may belong to another program: unused ones among them
+  /// are no mistake.
+  const std::vector<std::string>& options_from_elsewhere() const { return options_from_elsewhere_; }
+
+ private:
+  std::vector<std::string> options_from_elsewhere_;
 };
 
 /// Names of the options in the database that nothing has asked for yet.

@@ -1,13 +1,14 @@
 #pragma once
 // The signals that ask a run to stop after its step.
 
-#include <array>
 #include <csignal>
+#include <vector>
 
 namespace impinge {
 
-/// While it lives, SIGTERM, SIGINT and SIGUSR1 are noted; a second SIGINT ends the process. One at a time. Not
-/// collective: a signal may reach some ranks only.
+/// While it lives, SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGHUP, SIGQUIT, SIGXCPU, SIGALRM and SIGPIPE are noted, but for
+/// those that were ignored before (nohup); a second SIGINT ends the process. One at a time. Not collective: a signal
+/// may reach some ranks only.
 class StopSignals {
  public:
   StopSignals();
@@ -19,8 +20,7 @@ class StopSignals {
   static int received();
 
  private:
-  static constexpr std::array signals_{SIGTERM, SIGINT, SIGUSR1};
-  std::array<struct sigaction, signals_.size()> before_{};
+  std::vector<struct sigaction> before_;
 };
 
 /// "SIGTERM".
