@@ -39,11 +39,7 @@ Output::Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restar
 }
 
 void Output::start() {
-  for (const std::string& path : list_checkpoints(files_.directory, files_.name)) remove_file(path);
-  for (const std::string& path : list_snapshots(files_.directory, files_.name)) {
-    remove_file(path);
-    ++removed_;
-  }
+  if (holds_run(files_.directory, files_.name)) set_aside_ = set_run_aside(files_.directory, files_.name);
   history_.create();
 }
 

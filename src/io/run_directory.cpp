@@ -1,6 +1,7 @@
 #include "impinge/io/run_directory.hpp"
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -111,6 +113,28 @@ std::string try_longest_name(const std::string& directory, const std::string& na
 }
 
 std::string partial_path(const std::string& path) { return path + partial_ending; }
+
+bool holds_run(const std::string& directory, const std::string& name) {
+  return fs::exists(directory) &&
+         (!list_snapshots(directory, name).empty() || !list_checkpoints(directory, name).empty());
+}
+
+std::string set_run_aside(const std::string& directory, const std::string& name) {
+  const std::time_t now = std::time(nullptr);
+  const fs::path stem = fs::path(directory) / fmt::format("{}_before_{:%Y-%m-%d_%H%M%S}", name, fmt::localtime(now));
+  fs::path folder = stem;
+  std::error_code error;
+  for (int k = 2; !fs::create_directory(folder, error) && !error; ++k) folder = fmt::format("{}_{}", stem.string(), k);
+  std::vector<std::string> files = list_snapshots(directory, name);
+  for (std::string& path : list_checkpoints(directory, name)) files.push_back(std::move(path));
+  for (const std::string& path :
+       {history_path(directory, name), series_path(directory, name), (fs::path(directory) / "validation").string()})
+    if (fs::exists(path)) files.push_back(path);
+  for (const std::string& path : files)
+    if (!error) fs::rename(path, folder / fs::path(path).filename(), error);
+  if (error) throw FileError(fmt::format("cannot set the earlier run in {} aside: {}", directory, error.message()));
+  return folder.string();
+}
 
 std::string synchronise(const std::string& path) {
   const int descriptor = open(path.c_str(), O_RDONLY);

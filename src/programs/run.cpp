@@ -288,14 +288,25 @@ void check_output(MPI_Comm comm, const Case& config) {
 
 RunFiles files_of(const Case& config) { return {config.output.directory, config.name, config.resolved_text}; }
 
+/// Throws what would end the run in its first step: SolveError, InputError for PETSc options that nothing uses.
+/// Collective.
+template <int Dim>
+void try_first_step(MPI_Comm comm, const Case& config) {
+  auto trial = make_simulation<Dim>(comm, config);
+  trial.step();
+  refuse_unused_options(comm, trial.pressure_solver().default_options());
+}
+
 template <int Dim>
 bool start_run(MPI_Comm comm, const Case& config) {
   const bool first = rank_of(comm) == 0;
   check_output(comm, config);
-  Output output(comm, files_of(config));
-  if (first && output.removed() > 0)
-    fmt::print("replacing {} snapshot(s) of an earlier run in {}\n", output.removed(), config.output.directory);
+  // An earlier run stays where it is until this one is known to start.
+  if (any_rank(comm, first && holds_run(config.output.directory, config.name))) try_first_step<Dim>(comm, config);
   auto simulation = make_simulation<Dim>(comm, config);
+  Output output(comm, files_of(config));
+  if (first && !output.set_aside().empty())
+    fmt::print("the earlier run of this case is now in {}\n", output.set_aside());
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);

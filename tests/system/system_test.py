@@ -29,10 +29,10 @@ POINT_DATA = {
 }
 
 
-def call(*words, cwd=None, ranks=0):
+def call(*words, cwd=None, ranks=0, environment=None):
     launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks else []
     return subprocess.run(
-        [*launcher, *map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=300, check=False
+        [*launcher, *map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=300, check=False, env=environment
     )
 
 
@@ -130,6 +130,34 @@ class CommandLine(System):
         done = impinge(QUICK, "-ppe_pc_type", "nonsense", "--check")
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("nonsense", done.stderr)
+
+
+    def test_petsc_options_of_other_programs_are_told(self):
+        environment = {**os.environ, "PETSC_OPTIONS": "-snes_monitor"}
+        done = call(BIN / "impinge", QUICK, "--check", environment=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("PETSC_OPTIONS or .petscrc: -snes_monitor\n", done.stdout)
+        done = call(BIN / "impinge", QUICK, "--check", "-snes_monitor", environment=environment)
+        self.assertEqual(done.returncode, 2)
+
+    def test_an_earlier_run_is_kept(self):
+        words = [self.case("time.end = 2e-3\nname = 'short'\noutput.directory = 'out'\n")]
+        out = self.directory / "out"
+        self.assertEqual(impinge(*words, cwd=self.directory).returncode, 0)
+        first = {path.name: path.read_bytes() for path in out.iterdir()}
+        self.assertEqual(len(first), 5)  # two snapshots, checkpoint, series, history
+        # One that cannot start touches nothing.
+        for refused in (["-ppe_ksp_typ", "cg"], ["--set", "time.max_speed=1e-3"]):
+            self.assertNotEqual(impinge(*words, *refused, cwd=self.directory).returncode, 0)
+            self.assertEqual({path.name: path.read_bytes() for path in out.iterdir()}, first)
+        done = impinge(*words, cwd=self.directory)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the earlier run of this case is now in out/short_before_", done.stdout)
+        (aside,) = out.glob("short_before_*")
+        self.assertEqual({path.name: path.read_bytes() for path in aside.iterdir()}, first)
+        # A third run at the same second finds another name.
+        self.assertEqual(impinge(*words, cwd=self.directory).returncode, 0)
+        self.assertEqual(len(list(out.glob("short_before_*"))), 2)
 
 
 class Run(System):

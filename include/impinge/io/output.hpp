@@ -20,15 +20,15 @@ namespace impinge {
 ///   <name>.xmf             XDMF, the snapshots as a time series
 ///   <name>_history.csv     one row per step
 ///   <name>_<step>.checkpoint  the last two checkpoints
-/// A new run removes snapshots and checkpoints of an earlier one of the same name; a restarted one those after the step
-/// that it goes on from, and cuts the history there.
+/// A new run moves the files of an earlier one of the same name into a folder of their own; a restarted one removes
+/// those after the step that it goes on from, and cuts the history there.
 class Output {
  public:
   /// The directory exists. `restart_step`: of the checkpoint that the run goes on from. Collective. Throws FileError.
   Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restart_step = {});
 
-  /// How many files of an earlier run were removed.
-  int removed() const { return removed_; }
+  /// The folder that the files of an earlier run were moved to; empty if there were none. On rank 0.
+  const std::string& set_aside() const { return set_aside_; }
 
   /// Appends a row to the history. `seconds`: wall-clock time of the step. The next save throws what went wrong. Not
   /// collective.
@@ -50,7 +50,7 @@ class Output {
 
   MPI_Comm comm_;
   RunFiles files_;
-  int removed_ = 0;
+  std::string set_aside_;
   TableFile history_;  // open on rank 0
   Series series_;
 };

@@ -48,6 +48,13 @@ std::string try_longest_name(const std::string& directory, const std::string& na
 /// What a file is called until it is complete.
 std::string partial_path(const std::string& path);
 
+/// True if the directory has a snapshot or checkpoint of the case. Throws FileError.
+bool holds_run(const std::string& directory, const std::string& name);
+
+/// Moves all that a run of the case has left in the directory, its validation among it, into a new folder there,
+/// `<name>_before_<date>_<time>`. Returns the folder. Throws FileError.
+std::string set_run_aside(const std::string& directory, const std::string& name);
+
 /// Forces a file or directory to the disk. Returns why it could not; nothing if all is well.
 std::string synchronise(const std::string& path);
 
