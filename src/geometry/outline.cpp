@@ -110,7 +110,7 @@ std::optional<double> share_before(const Vector<2>& a, const Vector<2>& b, const
   // Of almost parallel lines the sides tell little.
   const double clamped = std::clamp(share, 0.0, 1.0);
   const Vector<2> point = a + clamped * along;
-  if (norm(edge.at(edge.nearest_share(point)) - point) > share_error * reach) return std::nullopt;
+  if (norm(edge.nearest(point) - point) > share_error * reach) return std::nullopt;
   return clamped;
 }
 
@@ -142,24 +142,23 @@ Gap gap_between(const OutlineEdge& first, const OutlineEdge& second) {
     const double width = norm(end - begin);
     if (width < gap.width) gap = {width, begin, end};
   };
-  const auto on = [](const OutlineEdge& edge, const Vector<2>& point) { return edge.at(edge.nearest_share(point)); };
-  for (const Vector<2>& end : {first.begin, first.end}) consider(end, on(second, end));
-  for (const Vector<2>& end : {second.begin, second.end}) consider(on(first, end), end);
+  for (const Vector<2>& end : {first.begin, first.end}) consider(end, second.nearest(end));
+  for (const Vector<2>& end : {second.begin, second.end}) consider(first.nearest(end), end);
   // Between the ends it is perpendicular to both: on the line from an arc's centre to the segment or to the other
   // centre.
   if (!first.straight() && second.straight()) {
-    const Vector<2> foot = on(second, first.center);
-    consider(on(first, foot), foot);
+    const Vector<2> foot = second.nearest(first.center);
+    consider(first.nearest(foot), foot);
   } else if (first.straight() && !second.straight()) {
-    const Vector<2> foot = on(first, second.center);
-    consider(foot, on(second, foot));
+    const Vector<2> foot = first.nearest(second.center);
+    consider(foot, second.nearest(foot));
   } else if (!first.straight()) {
     const Vector<2> between = second.center - first.center;
     if (norm(between) > 0.0) {
       const Vector<2> reach = first.radius / norm(between) * between;
       for (const Vector<2>& point : {first.center + reach, first.center - reach}) {
-        const Vector<2> begin = on(first, point);
-        consider(begin, on(second, begin));
+        const Vector<2> begin = first.nearest(point);
+        consider(begin, second.nearest(begin));
       }
     }
   }
@@ -228,7 +227,7 @@ bool check_corners(const std::vector<Vector<2>>& points, bool closed, std::vecto
     for (std::size_t j = i + 1; j < edges.size(); ++j) {
       const OutlineEdge &one = edges[i], &two = edges[j];
       const auto off = [&](const OutlineEdge& edge, const Vector<2>& point) {
-        return norm(edge.at(edge.nearest_share(point)) - point) > margin;
+        return norm(edge.nearest(point) - point) > margin;
       };
       const bool follows = j == i + 1, precedes = closed && i == 0 && j + 1 == edges.size();
       // Neighbours have one point in common; they must not run back over each other.
@@ -323,7 +322,7 @@ double Outline::length() const {
 NearestPoint Outline::nearest(const Vector<2>& point) const {
   NearestPoint nearest;
   for (std::size_t k = 0; k < edges_.size(); ++k) {
-    const Vector<2> on_edge = edges_[k].at(edges_[k].nearest_share(point));
+    const Vector<2> on_edge = edges_[k].nearest(point);
     const double distance = norm(on_edge - point);
     if (distance < nearest.distance) nearest = {on_edge, k, distance};
   }

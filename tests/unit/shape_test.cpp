@@ -371,7 +371,7 @@ TEST(Outline, FirstHitIsThatOfBruteForce) {
       ++hits;
       EXPECT_NEAR(shape.distance(hit->point), 0.0, 1e-14);
       const OutlineEdge& edge = shape.edges()[hit->edge];
-      expect_near(edge.at(edge.nearest_share(hit->point)), hit->point, 1e-14);
+      expect_near(edge.nearest(hit->point), hit->point, 1e-14);
       expect_near(from + hit->share * (to - from), hit->point, 1e-14);
     }
     EXPECT_GT(hits, 30);

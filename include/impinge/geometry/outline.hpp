@@ -26,6 +26,7 @@ struct OutlineEdge {
   Vector<2> normal(double share) const;
   /// Where the edge is nearest to a point, as a share of its length [-].
   double nearest_share(const Vector<2>& point) const;
+  Vector<2> nearest(const Vector<2>& point) const { return at(nearest_share(point)); }
 };
 
 /// The point of an outline that is nearest to another.
