@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/run_directory.hpp"
@@ -27,6 +28,15 @@ Output::Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restar
       files_(std::move(files)),
       history_(history_path(files_.directory, files_.name), history_header()),
       series_(series_path(files_.directory, files_.name), files_.name) {
+  std::vector<std::string> mistakes;
+  on_first_rank(comm, [&] {
+    try {
+      lock_ = RunLock(files_.directory, files_.name);
+    } catch (const InputError& error) {
+      mistakes = error.mistakes();
+    }
+  });
+  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
   on_first_rank(comm, [&] {
     for (const std::string& path : list_partial_files(files_.directory, files_.name)) remove_file(path);
     if (restart_step) {
@@ -60,7 +70,10 @@ void Output::go_on(std::int64_t step) {
     fmt::print(stderr, "impinge: {} has {} of the {} steps so far\n", history_.path(), rows, step);
 }
 
-void Output::record(const StepReport& report, double seconds) { history_.append(history_row(report, seconds)); }
+void Output::record(const StepReport& report, double seconds) {
+  history_.append(history_row(report, seconds));
+  lock_.beat();
+}
 
 template <int Dim>
 SnapshotHeader Output::header(const Simulation<Dim>& simulation, const std::string& status,

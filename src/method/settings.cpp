@@ -113,12 +113,11 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("time.mean_velocity", s.time.mean_velocity,
            "in a step, particles move with the mean of their old and their new velocity, not with the new "
            "one");
-  keys.add(
-      "time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
-      {.unit = "m/s",
-       .range = positive,
-       .fallback =
-           "20 x jet.speed, sqrt(2 |gravity| tank.fluid_height), periodic_box.shear_speed or that of the regions"});
+  keys.add("time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
+           {.unit = "m/s",
+            .range = positive,
+            .fallback = "20 x the jet's speed after its fall to the plate, sqrt(2 |gravity| tank.fluid_height), "
+                        "periodic_box.shear_speed or that of the regions"});
 
   for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
     std::string& text = keys.of(setting).about.fallback;

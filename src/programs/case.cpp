@@ -119,6 +119,16 @@ Case parse_restart(const NamedText& stored, const std::vector<std::string>& sett
   return config;
 }
 
+bool are_of_one_run(const NamedText& one, const NamedText& other) {
+  FixedValues here, there;
+  parse({one}, {}, here);
+  parse({other}, {}, there);
+  const auto is_place = [](const auto& entry) { return entry.first == "output.directory"; };  // it may have moved
+  std::erase_if(here, is_place);
+  std::erase_if(there, is_place);
+  return here == there;
+}
+
 std::string describe_keys() {
   Case c;
   Keys keys(c.dimension);

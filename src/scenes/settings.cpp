@@ -239,8 +239,9 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
 }
 
 double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  if (keys.usable(s.jet.speed)) return s.jet.speed;
   const double gravity = keys.usable(in.gravity) ? std::hypot(in.gravity[0], in.gravity[1], in.gravity[2]) : 0.0;
+  if (keys.usable(s.jet.speed, s.jet.width, s.jet.inlet_distance))
+    return std::hypot(s.jet.speed, std::sqrt(2.0 * gravity * s.jet.inlet_distance * s.jet.width));
   if (keys.usable(s.tank.fluid_height) && s.regions.empty()) return std::sqrt(2.0 * gravity * s.tank.fluid_height);
   if (!s.regions.empty()) return region_speed(keys, s, in, gravity);
   return keys.usable(s.periodic_box.shear_speed) ? s.periodic_box.shear_speed : 0.0;

@@ -150,7 +150,8 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
   result.last = headers.back();
   result.last_path = paths.back();
   for (std::size_t k = 0; k < paths.size(); ++k)
-    if (headers[k].case_text != result.last.case_text)
+    if (headers[k].case_text != result.last.case_text &&
+        !are_of_one_run({paths[k], headers[k].case_text}, {result.last_path, result.last.case_text}))
       throw InputError({fmt::format("{}: {} and {} are of different cases; one directory, one run", directory, paths[k],
                                     result.last_path)});
   result.config = parse_case({{result.last_path, result.last.case_text}});

@@ -455,6 +455,20 @@ TEST_F(RunDirectory, ReportHoldsMetricsAndProfiles) {
   EXPECT_EQ(film.size(), validation.film.size());
 }
 
+TEST_F(RunDirectory, AProlongedAndMovedRunIsOneRun) {
+  Case longer = config;
+  const auto change = [&](const std::string& from, const std::string& to) {
+    const auto at = longer.resolved_text.find(from);
+    ASSERT_NE(at, std::string::npos);
+    longer.resolved_text.replace(at, from.size(), to);
+  };
+  change("[time]\nend = ", "[time]\nend = 1");
+  change("directory = \"", "directory = \"moved/");
+  save(config, 1, 0.1, particles);
+  save(longer, 2, 0.2, particles);
+  EXPECT_EQ(validate(directory).times.size(), 1u);
+}
+
 TEST_F(RunDirectory, WrongInputIsToldApart) {
   EXPECT_NE(error_of<InputError>().find("no snapshot"), std::string::npos);
 

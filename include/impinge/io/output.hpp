@@ -8,6 +8,7 @@
 #include <string>
 
 #include "impinge/io/run_directory.hpp"
+#include "impinge/io/run_lock.hpp"
 #include "impinge/io/series.hpp"
 #include "impinge/io/snapshot.hpp"
 #include "impinge/io/table_file.hpp"
@@ -20,11 +21,13 @@ namespace impinge {
 ///   <name>.xmf             XDMF, the snapshots as a time series
 ///   <name>_history.csv     one row per step
 ///   <name>_<step>.checkpoint  the last two checkpoints
+///   <name>.lock            who writes them, while the run lasts
 /// A new run moves the files of an earlier one of the same name into a folder of their own; a restarted one removes
 /// those after the step that it goes on from, and cuts the history there.
 class Output {
  public:
-  /// The directory exists. `restart_step`: of the checkpoint that the run goes on from. Collective. Throws FileError.
+  /// The directory exists. `restart_step`: of the checkpoint that the run goes on from. Collective. Throws FileError,
+  /// InputError where another process writes this run.
   Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restart_step = {});
 
   /// The folder that the files of an earlier run were moved to; empty if there were none. On rank 0.
@@ -50,6 +53,7 @@ class Output {
 
   MPI_Comm comm_;
   RunFiles files_;
+  RunLock lock_;  // on rank 0
   std::string set_aside_;
   TableFile history_;  // open on rank 0
   Series series_;

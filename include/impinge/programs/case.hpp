@@ -43,6 +43,10 @@ Case parse_case(const std::vector<NamedText>& files, const std::vector<std::stri
 /// is no case.
 Case parse_restart(const NamedText& stored, const std::vector<std::string>& settings, const std::string& directory);
 
+/// True if both texts are the case of one run: they differ in keys that a restart can change, if in any. Throws
+/// InputError where a text is no case.
+bool are_of_one_run(const NamedText& one, const NamedText& other);
+
 /// Every key with type, unit, default, range and doc line, as a text for the terminal.
 std::string describe_keys();
 

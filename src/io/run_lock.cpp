@@ -1,0 +1,111 @@
+#include "impinge/io/run_lock.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "impinge/core/errors.hpp"
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds beat_interval{20};
+constexpr double oldest_beat = 120.0;  // of a living owner on another host [s]
+
+/// Who owns a directory.
+struct Owner {
+  std::string host;
+  long process = 0;
+  std::string started;  // by the kernel's clock, which tells a process from a later one of the same number
+  std::string job;      // of the batch system, or "-"
+};
+
+std::string start_of(long process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));  // behind the program's name
+  std::string field;
+  for (int k = 3; k <= 22; ++k) fields >> field;
+  return field.empty() ? "-" : field;
+}
+
+Owner this_process() {
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const char* job = "-";
+  for (const char* name : {"SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "JOB_ID"})
+    if (const char* value = std::getenv(name); value && *value) job = value;
+  return {host, getpid(), start_of(getpid()), job};
+}
+
+bool is_alive(const Owner& owner, const std::string& path) {
+  if (owner.host == this_process().host)
+    return (kill(static_cast<pid_t>(owner.process), 0) == 0 || errno == EPERM) &&
+           start_of(owner.process) == owner.started;
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 && std::difftime(std::time(nullptr), status.st_mtime) < oldest_beat;
+}
+
+}  // namespace
+
+RunLock::RunLock(const std::string& directory, const std::string& name)
+    : path_((fs::path(directory) / (name + ".lock")).string()), last_beat_(Clock::now()) {
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644);
+    if (file >= 0) {
+      const Owner self = this_process();
+      const std::string text = fmt::format("{} {} {} {}\n", self.host, self.process, self.started, self.job);
+      const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+      close(file);
+      if (written) return;
+    }
+    if (errno != EEXIST) break;
+    Owner owner;
+    std::ifstream(path_) >> owner.host >> owner.process >> owner.started >> owner.job;
+    if (is_alive(owner, path_)) {
+      const std::string job = owner.job == "-" ? "" : fmt::format(", job {}", owner.job);
+      const std::string own = std::exchange(path_, "");
+      throw InputError(
+          {fmt::format("{}: process {} on {}{} is writing this run; wait for its end, stop it, or choose "
+                       "another output.directory",
+                       own, owner.process, owner.host, job)});
+    }
+    unlink(path_.c_str());
+  }
+  const std::string reason = std::strerror(errno);
+  throw FileError(fmt::format("cannot write {}: {}", std::exchange(path_, ""), reason));
+}
+
+RunLock::RunLock(RunLock&& other) noexcept : path_(std::exchange(other.path_, "")), last_beat_(other.last_beat_) {}
+
+RunLock& RunLock::operator=(RunLock&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(last_beat_, other.last_beat_);
+  return *this;
+}
+
+RunLock::~RunLock() {
+  if (!path_.empty()) unlink(path_.c_str());
+}
+
+void RunLock::beat() {
+  if (path_.empty() || Clock::now() - last_beat_ < beat_interval) return;
+  last_beat_ = Clock::now();
+  utimensat(AT_FDCWD, path_.c_str(), nullptr, 0);
+}
+
+}  // namespace impinge

@@ -1,0 +1,76 @@
+// One owner of an output directory at a time.
+
+#include "impinge/io/run_lock.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "impinge/core/errors.hpp"
+
+namespace impinge {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunLocks : public testing::Test {
+ protected:
+  RunLocks() { fs::create_directories(directory_); }
+  ~RunLocks() override { fs::remove_all(directory_); }
+
+  std::string refusal() const {
+    try {
+      const RunLock lock(directory_, "case");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::string directory_ = (fs::temp_directory_path() / ("impinge_lock_" + std::to_string(getpid()))).string();
+  std::string file_ = directory_ + "/case.lock";
+};
+
+TEST_F(RunLocks, HaveOneOwner) {
+  {
+    const RunLock lock(directory_, "case");
+    EXPECT_NE(refusal().find("process " + std::to_string(getpid()) + " on "), std::string::npos) << refusal();
+    const RunLock other(directory_, "other");  // of another run
+  }
+  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, OfADeadProcessGiveWay) {
+  const pid_t child = fork();
+  if (child == 0) {
+    new RunLock(directory_, "case");  // dies with it
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(fs::exists(file_));
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, OfALaterProcessWithTheSameNumberGiveWay) {
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  std::ofstream(file_) << host << ' ' << getpid() << " 1 -\n";  // started with the machine
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, OfAnotherHostGiveWayWhereTheyAreOld) {
+  std::ofstream(file_) << "elsewhere 1 1 4711\n";
+  EXPECT_NE(refusal().find("process 1 on elsewhere, job 4711 is writing this run"), std::string::npos) << refusal();
+  fs::last_write_time(file_, fs::file_time_type::clock::now() - std::chrono::minutes(3));
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, ThatCannotBeWrittenAreToldOf) { EXPECT_THROW(RunLock(directory_ + "/nowhere", "case"), FileError); }
+
+}  // namespace
+}  // namespace impinge
