@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -34,13 +34,16 @@ struct Owner {
   std::string job;      // of the batch system, or "-"
 };
 
+/// When a process started, in the kernel's clock ticks; "-" where there is none, or one that has ended and only waits
+/// for its parent.
 std::string start_of(long process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text((std::istreambuf_iterator<char>(file)), {});
   std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));  // behind the program's name
-  std::string field;
-  for (int k = 3; k <= 22; ++k) fields >> field;
-  return field.empty() ? "-" : field;
+  std::string state, field;
+  fields >> state;
+  for (int k = 4; k <= 22; ++k) fields >> field;
+  return field.empty() || state == "Z" || state == "X" ? "-" : field;
 }
 
 Owner this_process() {
@@ -53,9 +56,7 @@ Owner this_process() {
 }
 
 bool is_alive(const Owner& owner, const std::string& path) {
-  if (owner.host == this_process().host)
-    return (kill(static_cast<pid_t>(owner.process), 0) == 0 || errno == EPERM) &&
-           start_of(owner.process) == owner.started;
+  if (owner.host == this_process().host) return start_of(owner.process) == owner.started;
   struct stat status {};
   return stat(path.c_str(), &status) == 0 && std::difftime(std::time(nullptr), status.st_mtime) < oldest_beat;
 }

@@ -51,8 +51,11 @@ TEST_F(RunLocks, OfADeadProcessGiveWay) {
     new RunLock(directory_, "case");  // dies with it
     _exit(0);
   }
-  waitpid(child, nullptr, 0);
+  siginfo_t info{};
+  waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT);
   ASSERT_TRUE(fs::exists(file_));
+  EXPECT_EQ(refusal(), "");  // though its parent has not heard of its end
+  waitpid(child, nullptr, 0);
   EXPECT_EQ(refusal(), "");
 }
 
