@@ -81,6 +81,51 @@ void expect_the_same_run(const Case& config, int steps) {
                farthest, here.report().kinetic_energy, here.report().out);
 }
 
+/// Two regions without walls that a central force pulls together.
+Case drops_case(const std::vector<std::string>& settings = {}) {
+  std::vector<std::string> all{tight};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return parse_case({{"drops.toml", R"(geometry = "scene"
+particles.spacing = 0.1
+time = {end = 10.0, dt = 1e-2}
+fluid.central_force = 1.0
+[[fluid.region]]
+shape = "circle"
+center = [0, 0]
+radius = 1.0
+gradient = [0.25, 0, 0, -0.25]
+[[fluid.region]]
+shape = "box"
+low = [1.1, -0.3]
+high = [1.7, 0.3]
+velocity = [-0.5, 0.2]
+spin = 0.5
+)"}},
+                    all);
+}
+
+/// A column of water in a tank that is then tilted.
+Case column_case(const std::vector<std::string>& settings = {}) {
+  std::vector<std::string> all{tight};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return parse_case({{"column.toml", R"(geometry = "tank"
+particles.spacing = 0.05
+time = {end = 10.0, dt = 2e-3}
+tank.size = [1.0, 0.5]
+[[fluid.region]]
+shape = "box"
+low = [0, 0]
+high = [0.4, 0.4]
+[[fluid.gravity_at]]
+time = 0
+value = [0, -9.81]
+[[fluid.gravity_at]]
+time = 0.1
+value = [9.81, -9.81]
+)"}},
+                    all);
+}
+
 class RunOfScheme : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, RunOfScheme, testing::Values("scheme=consistent", "scheme=paper"),
                          [](const auto& test) { return test.param.substr(test.param.find('=') + 1); });
@@ -97,6 +142,21 @@ TEST_P(RunOfScheme, TankIsThatOfASingleRank) {
 
 TEST_P(RunOfScheme, TankInThreeDimensionsIsThatOfASingleRank) {
   expect_the_same_run<3>(shipped_case("hydrostatic-3d.toml", {tight, GetParam()}), 5);
+}
+
+TEST(Run, OfRegionsUnderACentralForceIsThatOfASingleRank) { expect_the_same_run<2>(drops_case(), 60); }
+
+TEST(Run, OfAColumnUnderGravityInTimeIsThatOfASingleRank) { expect_the_same_run<2>(column_case(), 60); }
+
+TEST(Run, GoesOnWhereFluidLeavesATankWithAnExactBalance) {
+  auto simulation =
+      make_simulation<2>(MPI_COMM_WORLD, column_case({"tank.size=[1.0, 0.4]", "pressure.tolerance=1e-6"}));
+  while (simulation.report().time < 1.2) {
+    simulation.step();
+    const StepReport& report = simulation.report();
+    ASSERT_EQ(report.in, report.out + report.lost + report.fluid) << "step " << report.step;
+  }
+  EXPECT_GT(simulation.report().lost, 0);
 }
 
 TEST(Run, IsThatOfASingleRankWithPTScotch) {

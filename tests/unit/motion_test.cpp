@@ -1,0 +1,150 @@
+// Body forces, the length of a step, and mirrors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "cloud.hpp"
+#include "dimensions.hpp"
+#include "impinge/method/body_force.hpp"
+#include "impinge/method/time_step.hpp"
+
+namespace impinge {
+namespace {
+
+TEST(BodyForce, FollowsATableLinearlyAndStaysConstantBeyondIt) {
+  FluidSettings fluid;
+  fluid.gravity = {7.0, 7.0, 7.0};
+  fluid.gravity_at = {{1.0, {0.0, -10.0}}, {2.0, {4.0, -10.0}}, {4.0, {4.0, -6.0}}};
+  const auto at = [&](double time) { return BodyForce<2>(fluid, time).at({{3.0, 5.0}}); };
+  EXPECT_EQ(at(0.0), (Vector<2>{{0.0, -10.0}}));
+  EXPECT_EQ(at(1.5), (Vector<2>{{2.0, -10.0}}));
+  EXPECT_EQ(at(3.0), (Vector<2>{{4.0, -8.0}}));
+  EXPECT_EQ(at(9.0), (Vector<2>{{4.0, -6.0}}));
+}
+
+TEST(BodyForce, PullsToACentreInProportionToTheDistance) {
+  FluidSettings fluid;
+  fluid.central_force = 2.0;
+  fluid.force_center = {1.0, 0.0, 0.0};
+  const BodyForce<2> force(fluid, 0.0);
+  EXPECT_EQ(force.at({{1.0, 0.0}}), (Vector<2>{}));
+  EXPECT_EQ(force.at({{2.0, -1.0}}), (Vector<2>{{-4.0, 4.0}}));
+  EXPECT_FALSE(force.is_zero());
+  EXPECT_TRUE(BodyForce<2>(FluidSettings{}, 0.0).is_zero());
+  Particles<2> particles;
+  particles.append({{{1.0, 3.0}}, {}, 0.0, 0.0, 0, ParticleType::fluid});
+  particles.append({{{1.0, 9.0}}, {}, 0.0, 0.0, 1, ParticleType::wall});
+  EXPECT_DOUBLE_EQ(force.largest(MPI_COMM_SELF, particles), 12.0);
+}
+
+TEST(TimeStep, IsTheSmallestOfItsLimits) {
+  constexpr double spacing = 0.01;
+  const auto choose = [](double dt, double max_speed, double acceleration, double last, int halvings = 0) {
+    TimeSettings time;
+    time.dt = dt;
+    time.cfl = 0.2;
+    StepReport report;
+    report.dt = last;
+    report.max_speed = max_speed;
+    report.halvings = halvings;
+    choose_time_step(time, spacing, acceleration, report);
+    return std::pair(report.dt, report.limit);
+  };
+  EXPECT_EQ(choose(1e-3, 1.0, 10.0, 1e-3), std::pair(1e-3, StepLimit::case_dt));
+  EXPECT_EQ(choose(1.0, 4.0, 10.0, 1e-3), std::pair(0.2 * spacing / 4.0, StepLimit::cfl));
+  EXPECT_EQ(choose(1.0, 0.0, 9.81, 1.0), std::pair(0.2 * std::sqrt(spacing / 9.81), StepLimit::force));
+  EXPECT_EQ(choose(1.0, 0.0, 0.0, 1e-3), std::pair(1.1 * 1e-3, StepLimit::growth));
+  EXPECT_EQ(choose(1e-3, 1.0, 10.0, 1e-3, 2), std::pair(0.25e-3, StepLimit::retry));
+  // The first step has a quarter of the Courant number.
+  EXPECT_DOUBLE_EQ(choose(1.0, 4.0, 0.0, 0.0).first, 0.05 * spacing / 4.0);
+}
+
+template <class Dimension>
+class Mirrors : public testing::Test {
+ protected:
+  /// A room far from the origin whose walls are mirrors.
+  static Box<Dimension::value> room() {
+    Box<Dimension::value> box;
+    for (int k = 0; k < Dimension::value; ++k) {
+      box.low[k] = 1000.0 + k;
+      box.high[k] = 1010.0 + k;
+    }
+    return box;
+  }
+};
+TYPED_TEST_SUITE(Mirrors, Dimensions);
+
+TYPED_TEST(Mirrors, ShowEveryParticleWithinReachOnceBehindEveryWallEdgeAndCorner) {
+  constexpr int Dim = TypeParam::value;
+  constexpr double reach = 2.5;
+  const Box<Dim> box = this->room();
+  auto walls = mirrors_of<Dim>(Edge::mirror, box, reach);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0.0, 10.0), speed(-1.0, 1.0);
+  Particles<Dim> particles;
+  for (int i = 0; i < 200; ++i) {
+    ParticleRecord<Dim> record{};
+    for (int k = 0; k < Dim; ++k) {
+      record.position[k] = box.low[k] + place(random);
+      record.velocity[k] = speed(random);
+    }
+    record.id = i;
+    particles.append(record);
+  }
+  walls.append_images(particles);
+  std::size_t expected = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::size_t images = 1;
+    for (int k = 0; k < Dim; ++k) {
+      const double low = particles.position[static_cast<std::size_t>(i)][k] - box.low[k];
+      images *= 1 + (low < reach) + (10.0 - low < reach);
+    }
+    expected += images - 1;
+  }
+  ASSERT_EQ(walls.count(), expected);
+  walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
+    EXPECT_EQ(particles.id[at], particles.id[from]);
+    double parity = 1.0;
+    for (int k = 0; k < Dim; ++k) {
+      const double mine = particles.position[at][k], other = particles.position[from][k];
+      const bool reflected = mine < box.low[k] || mine > box.high[k];
+      const double wall = mine < box.low[k] ? box.low[k] : box.high[k];
+      EXPECT_NEAR(mine, reflected ? 2.0 * wall - other : other, 1e-11);
+      EXPECT_EQ(particles.velocity[at][k], reflected ? -particles.velocity[from][k] : particles.velocity[from][k]);
+      if (reflected) parity = -parity;
+    }
+    EXPECT_EQ(walls.reflection(image).parity, parity);
+  });
+}
+
+TYPED_TEST(Mirrors, PutBackWhatHasPassedThem) {
+  constexpr int Dim = TypeParam::value;
+  const Box<Dim> box = this->room();
+  const auto walls = mirrors_of<Dim>(Edge::mirror, box, 2.5);
+  Particles<Dim> particles;
+  ParticleRecord<Dim> record{};
+  for (int k = 0; k < Dim; ++k) record.position[k] = box.low[k] + 5.0;
+  record.position[0] = box.low[0] - 0.25;
+  record.position[1] = box.high[1] + 0.5;
+  record.velocity[0] = -1.0;
+  record.velocity[1] = 2.0;
+  particles.append(record);
+  record.position[0] = box.high[0];  // on the wall
+  particles.append(record);
+  record.position[0] = -1.0;
+  record.type = ParticleType::inlet;
+  particles.append(record);
+  walls.confine(particles, 1.0);
+  EXPECT_DOUBLE_EQ(particles.position[0][0], box.low[0] + 0.25);
+  EXPECT_DOUBLE_EQ(particles.position[0][1], box.high[1] - 0.5);
+  EXPECT_EQ(particles.velocity[0][0], 1.0);
+  EXPECT_EQ(particles.velocity[0][1], -2.0);
+  EXPECT_LT(particles.position[1][0], box.high[0]);
+  EXPECT_EQ(particles.position[2][0], -1.0);
+}
+
+}  // namespace
+}  // namespace impinge
