@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "impinge/programs/case.hpp"
+#include "impinge/cases/case.hpp"
 
 namespace impinge {
 

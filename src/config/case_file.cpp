@@ -441,8 +441,13 @@ std::string resolved_text(const Keys& keys) {
     if (value.starts_with('[') && value.size() > longest) value = keys.value_text(key, ",\n  ");
     text += fmt::format("{} = {}\n", key.local_name(), value);
   };
+  // Several modules may have keys in one table, but a text opens it once.
+  std::vector<std::string_view> tables;
   for (const Key& key : keys.all())
-    if (!key.list) write(key);
+    if (!key.list && std::ranges::find(tables, key.table) == tables.end()) tables.push_back(key.table);
+  for (const std::string_view open : tables)
+    for (const Key& key : keys.all())
+      if (!key.list && key.table == open) write(key);
   for (const Key& list : keys.all())
     for (const Key& key : keys.all())
       if (list.is_list() && key.list == &list) write(key);

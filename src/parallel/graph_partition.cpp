@@ -74,7 +74,8 @@ std::vector<int> partition_with_ptscotch(MPI_Comm comm, const CellGraph& graph, 
 void declare_parallel(Keys& keys, ParallelSettings& settings) {
   keys.add("parallel.partitioner", settings.partitioner, "library that distributes the cells over the ranks");
   keys.add("parallel.imbalance", settings.imbalance,
-           "largest over mean number of particles of a rank that calls for a new partition", {.range = from_to(1, 100)});
+           "largest over mean number of particles of a rank that calls for a new partition",
+           {.range = from_to(1, 100)});
 }
 
 bool needs_edges(MPI_Comm comm, Partitioner partitioner) {

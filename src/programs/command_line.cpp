@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/observe/history.hpp"
-#include "impinge/programs/case.hpp"
 
 namespace impinge {
 namespace {

@@ -7,12 +7,12 @@
 
 #include <cstdio>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/core/petsc.hpp"
 #include "impinge/io/hdf5_file.hpp"
 #include "impinge/method/simulation.hpp"
 #include "impinge/parallel/exchange.hpp"
-#include "impinge/programs/case.hpp"
 #include "impinge/programs/command_line.hpp"
 #include "impinge/programs/run.hpp"
 

@@ -12,8 +12,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
-#include "impinge/programs/case.hpp"
 #include "impinge/validation/validation.hpp"
 
 namespace {

@@ -12,11 +12,11 @@
 #include <set>
 #include <sstream>
 
+#include "impinge/cases/make_simulation.hpp"
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/output.hpp"
 #include "impinge/io/run_directory.hpp"
 #include "impinge/parallel/exchange.hpp"
-#include "impinge/programs/make_simulation.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
 #include "impinge/programs/stop_signals.hpp"

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "impinge/cases/make_simulation.hpp"
 #include "impinge/programs/command_line.hpp"
-#include "impinge/programs/make_simulation.hpp"
 #include "impinge/programs/run.hpp"
 
 namespace impinge {

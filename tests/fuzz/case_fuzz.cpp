@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "fuzz_directory.hpp"
-#include "impinge/programs/case.hpp"
+#include "impinge/cases/case.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <fstream>
 
 #include "gather.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/run_directory.hpp"
-#include "impinge/programs/make_simulation.hpp"
 #include "shared_directory.hpp"
 #include "shipped_case.hpp"
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "gather.hpp"
-#include "impinge/programs/make_simulation.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {

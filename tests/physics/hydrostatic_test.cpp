@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "impinge/programs/make_simulation.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {

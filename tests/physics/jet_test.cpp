@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "impinge/programs/make_simulation.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
 #include "shipped_case.hpp"
 

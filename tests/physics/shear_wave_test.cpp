@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impinge/programs/make_simulation.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {

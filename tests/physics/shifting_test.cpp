@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "impinge/programs/make_simulation.hpp"
+#include "impinge/cases/make_simulation.hpp"
 #include "mpi/gather.hpp"
 #include "shipped_case.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/observe/history.hpp"
-#include "impinge/programs/case.hpp"
 
 namespace impinge {
 namespace {

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
-#include "impinge/programs/case.hpp"
 
 namespace impinge {
 namespace {

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <set>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
-#include "impinge/programs/case.hpp"
 #include "impinge/scenes/scenes.hpp"
 
 namespace impinge {

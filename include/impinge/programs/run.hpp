@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "impinge/programs/case.hpp"
+#include "impinge/cases/case.hpp"
 
 namespace impinge {
 

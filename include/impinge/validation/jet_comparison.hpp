@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "impinge/cases/case.hpp"
 #include "impinge/particles/particles.hpp"
-#include "impinge/programs/case.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
 
 namespace impinge {

@@ -1,4 +1,4 @@
-#include "impinge/programs/case.hpp"
+#include "impinge/cases/case.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,8 +1,8 @@
 #pragma once
 // A simulation of a case in its scene.
 
+#include "impinge/cases/case.hpp"
 #include "impinge/method/simulation.hpp"
-#include "impinge/programs/case.hpp"
 #include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
