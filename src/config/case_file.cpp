@@ -97,8 +97,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// "; did you mean ...?" where a key's name is near, else the keys of the table where it exists, else nothing.
+/// How many tables a list has where it lacks the one that is named; "; did you mean ...?" where a key's name is near;
+/// else the keys of the table where it exists, else nothing.
 std::string suggestion(const Keys& keys, std::string_view unknown) {
+  for (const Key& key : keys.all()) {
+    if (key.is_list() && unknown.starts_with(key.name + '[') &&
+        !keys.is_table(unknown.substr(0, unknown.find(']') + 1)))
+      return fmt::format("; [[{}]] has {} table(s)", key.name, std::get<List>(key.target).size());
+  }
   const auto last_part = [](std::string_view name) { return name.substr(name.rfind('.') + 1); };
   const auto dot = unknown.rfind('.');
   const std::string_view table = dot == unknown.npos ? "" : unknown.substr(0, dot);
@@ -428,9 +434,23 @@ bool read_files(Keys& keys, const std::vector<NamedText>& files, const std::vect
 // ---------------------------------------------------------------------------------------------------------------------
 // Writing.
 
+namespace {
+
+/// The tables of the keys outside lists, in the order of their first keys; the top of the file is the first. Several
+/// modules may have keys in one table, but a text opens it once.
+std::vector<std::string> tables_of(const Keys& keys) {
+  std::vector<std::string> tables{""};
+  for (const Key& key : keys.all())
+    if (!key.list && std::ranges::find(tables, key.table) == tables.end()) tables.push_back(key.table);
+  return tables;
+}
+
+std::string only_text(const Key& key) { return key.condition.key ? fmt::format("{} only", condition_text(key)) : ""; }
+
+}  // namespace
+
 std::string resolved_text(const Keys& keys) {
-  std::string text;
-  std::string_view table;
+  std::string text, table;
   const auto write = [&](const Key& key) {
     if (!key.usable || key.is_list()) return;  // without a mistake, what applies is usable
     if (key.table != table)
@@ -441,13 +461,9 @@ std::string resolved_text(const Keys& keys) {
     if (value.starts_with('[') && value.size() > longest) value = keys.value_text(key, ",\n  ");
     text += fmt::format("{} = {}\n", key.local_name(), value);
   };
-  // Several modules may have keys in one table, but a text opens it once.
-  std::vector<std::string_view> tables;
-  for (const Key& key : keys.all())
-    if (!key.list && std::ranges::find(tables, key.table) == tables.end()) tables.push_back(key.table);
-  for (const std::string_view open : tables)
+  for (const std::string& own : tables_of(keys))
     for (const Key& key : keys.all())
-      if (!key.list && key.table == open) write(key);
+      if (!key.list && key.table == own) write(key);
   for (const Key& list : keys.all())
     for (const Key& key : keys.all())
       if (list.is_list() && key.list == &list) write(key);
@@ -459,29 +475,33 @@ std::string describe(Keys& keys) {
       "Keys of a case file (TOML), each with what is allowed and its default.\n"
       "include = \"FILE\" at the top of a case file takes that file's values as defaults; FILE is relative to the case "
       "file.\n";
-  std::string_view table;
-  const auto only = [](const Key& key) {
-    return key.condition.key ? fmt::format("  {} only", condition_text(key)) : "";
-  };
-  const auto write = [&](const Key& key) {
-    if (!key.list && key.table != table) text += fmt::format("\n[{}]{}\n", key.table, only(key));
-    table = key.table;
+  const auto write = [&](const Key& key, std::string_view name, std::string_view only) {
     const std::string fallback = key.about.required           ? "required"
                                  : key.about.fallback.empty() ? "default " + keys.value_text(key)
                                                               : "default " + key.about.fallback;
-    text +=
-        fmt::format("  {:<29} {}: {}; {}{}\n  {:<29} {}\n", key.list ? key.local_name() : std::string_view(key.name),
-                    type_text(key), allowed_text(key), fallback, key.list ? only(key) : "", "", key.doc);
+    text += fmt::format("  {:<29} {}: {}; {}{}{}\n  {:<29} {}\n", name, type_text(key), allowed_text(key), fallback,
+                        only.empty() ? "" : "; ", only, "", key.doc);
   };
-  for (const Key& key : keys.all())
-    if (!key.is_list()) write(key);
+  for (const std::string& table : tables_of(keys)) {
+    std::vector<const Key*> own;
+    for (const Key& key : keys.all())
+      if (key.table == table && !key.is_list()) own.push_back(&key);
+    if (own.empty()) continue;
+    const std::string only = only_text(*own[0]);
+    const bool common = std::ranges::all_of(own, [&](const Key* key) { return only_text(*key) == only; });
+    if (!table.empty())
+      text += fmt::format("\n[{}]{}{}\n", table, common && !only.empty() ? "  " : "", common ? only : "");
+    for (const Key* key : own) write(*key, key->name, common ? "" : only_text(*key));
+  }
   for (std::size_t k = 0, count = keys.all().size(); k < count; ++k) {
     Key& list = keys.all()[k];
     if (!list.is_list()) continue;
-    text += fmt::format("\n[[{}]]{}\n  any number of tables: {}\n", list.name, only(list), list.doc);
+    const std::string only = only_text(list);
+    text +=
+        fmt::format("\n[[{}]]{}{}\n  any number of tables: {}\n", list.name, only.empty() ? "" : "  ", only, list.doc);
     keys.resize(list, std::vector<Place>(1));
     for (const Key& key : keys.all())
-      if (key.list == &list) write(key);
+      if (key.list == &list) write(key, key.local_name(), only_text(key));
   }
   return text;
 }

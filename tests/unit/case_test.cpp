@@ -262,6 +262,12 @@ TEST(Case, FindsNumbersOutOfRange) {
             Texts{"case.toml:1: kernel.laplacian_radius = 6.5: out of range; allowed: (1, 6] (dp)"});
 }
 
+TEST(Case, AnEndThatNoDoubleHasIsTheNearest) {
+  const Case config = parse("time.end = 9007199254740993");
+  EXPECT_EQ(config.time.end, 9007199254740992.0);
+  EXPECT_NE(config.resolved_text.find("\nend = 9007199254740992.0\n"), std::string::npos) << config.resolved_text;
+}
+
 TEST(Case, FindsUnknownWordsAndEmptyStrings) {
   EXPECT_EQ(mistakes_in("kernel.type = \"cubic\""),
             Texts{"case.toml:1: kernel.type = \"cubic\": unknown word; allowed: \"non_singular\", \"singular\""});
