@@ -177,7 +177,7 @@ class Run(System):
         done = self.run_case("--set", "time.end=0.05", "--set", "output.interval=0.02", "--set",
                              "output.average_start=0.01", ranks=3)
         self.assertIn("iterations", done.stdout)
-        self.assertIn("in - out - stored = 0", done.stdout)
+        self.assertIn("in - out - lost - stored = 0", done.stdout)
         history = self.history()
         self.assertEqual([int(row["step"]) for row in history], list(range(1, len(history) + 1)))
         self.assertAlmostEqual(float(history[-1]["t"]), 0.05, delta=3.2e-3)
