@@ -1,5 +1,7 @@
 // Case files: every kind of mistake with its message, the order of precedence, the resolved text, the shipped cases.
 
+#include "impinge/cases/case.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,7 +10,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
 
 namespace impinge {
