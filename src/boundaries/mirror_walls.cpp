@@ -8,6 +8,7 @@ namespace {
 
 constexpr double right_angle = 1e-9;  // largest product of the normals of two faces that meet at a right angle
 constexpr double least_gap = 1e-9;    // between a particle and a face after a reflection [dp]
+constexpr double rounding = 1e-15;    // of a position, over its distance from the origin
 
 // The reflection at a face, then the other.
 template <int Dim>
@@ -58,7 +59,8 @@ void MirrorWalls<Dim>::confine(Particles<Dim>& particles, double spacing) const 
     for (const Face<Dim>& face : faces_) {
       const double depth = -face.distance(particles.position[i]);
       if (!(depth >= 0.0)) continue;
-      particles.position[i] += 2.0 * std::max(depth, 0.5 * (depth + least_gap * spacing)) * face.normal;
+      const double gap = std::max(least_gap * spacing, rounding * norm(particles.position[i]));
+      particles.position[i] += 2.0 * std::max(depth, 0.5 * (depth + gap)) * face.normal;
       if (depth > 0.0) particles.velocity[i] -= 2.0 * dot(particles.velocity[i], face.normal) * face.normal;
     }
   }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "impinge/core/mpi.hpp"
@@ -48,8 +50,6 @@ std::shared_ptr<const Shape<2>> shape_of(const FluidRegion& region, std::vector<
 
 std::shared_ptr<const Shape<3>> shape_of(const FluidRegion& region, std::vector<std::string>& mistakes, Vector<3>) {
   const Transform<3> scaling{.scale = region.scale, .about = vector_of<3>(region.about)};
-  if (region.rotate != 0.0) mistakes.push_back("rotate turns shapes of two dimensions only");
-  if (region.spin != 0.0) mistakes.push_back("spin is a rotation in two dimensions; use gradient in three");
   if (region.shape == RegionShape::sphere)
     return std::make_shared<const Sphere>(scaling(vector_of<3>(region.center)), region.scale * region.radius);
   if (region.shape != RegionShape::box) {
@@ -103,49 +103,79 @@ bool is_usable(const Keys& keys, const FluidRegion& region) {
 /// A point that lies deeper than `depth` in both regions, of a fine lattice over what their bounds have in common.
 template <int Dim>
 std::optional<Vector<Dim>> common_point(const PlacedRegion<Dim>& a, const PlacedRegion<Dim>& b, double depth) {
-  constexpr int most = Dim == 2 ? 200 : 40;  // points along an axis
+  constexpr double most = Dim == 2 ? 200.0 : 40.0;  // points along an axis
   const Box<Dim> first = a.bounds(), second = b.bounds();
-  BoxLattice<Dim> lattice;
-  double longest = 0.0;
-  Vector<Dim> high;
+  BoxLattice<Dim> numbers{.spacing = 1.0};
+  Vector<Dim> low, step;
   for (int k = 0; k < Dim; ++k) {
-    lattice.low[k] = std::max(first.low[k], second.low[k]);
-    high[k] = std::min(first.high[k], second.high[k]);
-    if (high[k] - lattice.low[k] <= 2.0 * depth) return {};
-    longest = std::max(longest, high[k] - lattice.low[k]);
+    low[k] = std::max(first.low[k], second.low[k]);
+    const double length = std::min(first.high[k], second.high[k]) - low[k];
+    if (length <= 2.0 * depth) return {};
+    const double count = std::ceil(std::min(length / depth, most));
+    numbers.extent[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(count);
+    step[k] = length / count;
   }
-  lattice.spacing = std::max(depth, longest / most);
-  for (int k = 0; k < Dim; ++k)
-    lattice.extent[static_cast<std::size_t>(k)] =
-        static_cast<std::int64_t>(std::ceil((high[k] - lattice.low[k]) / lattice.spacing));
-  for (std::int64_t k = 0; k < lattice.count(); ++k) {
-    const Vector<Dim> point = lattice.point(k);
+  for (std::int64_t k = 0; k < numbers.count(); ++k) {
+    Vector<Dim> point = numbers.point(k);
+    for (int axis = 0; axis < Dim; ++axis) point[axis] = low[axis] + step[axis] * point[axis];
     if (a.contains(point, depth) && b.contains(point, depth)) return point;
   }
   return {};
 }
 
+/// The first numbers of a corner: "(0, 1.5)".
+std::string corner_text(const Vector<3>& corner, int dimension) {
+  return fmt::format("({:.6g})", fmt::join(corner.component.begin(), corner.component.begin() + dimension, ", "));
+}
+
+/// What is wrong with where a shape lies and how large it is; nothing if all is well.
 template <int Dim>
-void check_regions(Keys& keys, double spacing, const std::vector<FluidRegion>& regions) {
+std::string problem_of(const PlacedRegion<Dim>& region, double spacing, const Box<3>& room) {
+  const Box<Dim> bounds = region.bounds();
+  double points = 1.0;  // of the region's lattice, or more
+  bool is_outside = false;
+  for (int k = 0; k < Dim; ++k) {
+    points *= (bounds.high[k] - bounds.low[k]) / spacing;
+    is_outside |= bounds.high[k] <= room.low[k] || bounds.low[k] >= room.high[k];
+  }
+  constexpr int most = std::numeric_limits<std::int32_t>::max();
+  if (!(points <= most)) return fmt::format("makes some {:.2g} particles; allowed: at most {}", points, most);
+  if (region.volume() < 0.5 * std::pow(spacing, Dim))
+    return fmt::format("holds no particle; its {} is {:.3g} m^{}", Dim == 2 ? "area" : "volume", region.volume(), Dim);
+  if (is_outside)
+    return fmt::format("lies outside the scene, which reaches from {} to {} m", corner_text(room.low, Dim),
+                       corner_text(room.high, Dim));
+  return "";
+}
+
+template <int Dim>
+void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::vector<FluidRegion>& regions) {
   std::vector<const FluidRegion*> sound;
+  std::vector<PlacedRegion<Dim>> in_place;  // of the sound ones
   for (const FluidRegion& region : regions) {
     if (!is_usable(keys, region)) continue;
     std::vector<std::string> mistakes;
-    const auto shape = shape_of(region, mistakes, Vector<Dim>{});
-    if (shape && mistakes.empty() && shape->volume() < 0.5 * std::pow(spacing, Dim))
-      mistakes.push_back(
-          fmt::format("holds no particle; its {} is {:.3g} m^{}", Dim == 2 ? "area" : "volume", shape->volume(), Dim));
+    if (shape_of(region, mistakes, Vector<Dim>{})) {
+      const PlacedRegion<Dim> placed_region(region, spacing);
+      const std::string problem = problem_of(placed_region, spacing, room);
+      if (problem.empty()) {
+        sound.push_back(&region);
+        in_place.push_back(placed_region);
+      } else {
+        mistakes.push_back(problem);
+      }
+    }
+    if (Dim == 3 && region.rotate != 0.0) keys.mistake(region.rotate, "turns in two dimensions only; allowed: 0 (deg)");
+    if (Dim == 3 && region.spin != 0.0)
+      keys.mistake(region.spin, "a rotation in two dimensions only; allowed: 0 (rad/s), and fluid.region.gradient");
     if (!region.gradient.empty() && region.gradient.size() != Dim * Dim)
       keys.mistake(region.gradient, fmt::format("has {} numbers; allowed: {}, the rows of du_i/dx_j (1/s)",
                                                 region.gradient.size(), Dim * Dim));
     for (const std::string& what : mistakes) keys.mistake(region.shape, what);
-    if (mistakes.empty() && shape) sound.push_back(&region);
   }
   for (std::size_t b = 0; b < sound.size(); ++b) {
-    const PlacedRegion<Dim> second(*sound[b], spacing);
     for (std::size_t a = 0; a < b; ++a) {
-      const PlacedRegion<Dim> first(*sound[a], spacing);
-      const auto point = common_point(first, second, 0.25 * spacing);
+      const auto point = common_point(in_place[a], in_place[b], 0.25 * spacing);
       if (!point) continue;
       keys.mistake(sound[b]->shape, fmt::format("overlaps the fluid \"{}\", given at {}, at ({:.6g}) m", sound[a]->name,
                                                 keys.place(sound[a]->shape), fmt::join(point->component, ", ")));
@@ -198,13 +228,14 @@ bool has_shape(const FluidRegion& region, int dimension) {
                         : shape_of(region, mistakes, Vector<3>{}) != nullptr;
 }
 
-void check_fluid(Keys& keys, int dimension, double spacing, const std::vector<FluidRegion>& regions) {
+void check_fluid(Keys& keys, int dimension, double spacing, const Box<3>& room,
+                 const std::vector<FluidRegion>& regions) {
   for (std::size_t b = 0; b < regions.size(); ++b)
     for (std::size_t a = 0; a < b; ++a)
       if (regions[a].name == regions[b].name)
         keys.mistake(regions[b].name, fmt::format("the name is used twice, first at {}", keys.place(regions[a].name)));
-  if (dimension == 2) check_regions<2>(keys, spacing, regions);
-  if (dimension == 3) check_regions<3>(keys, spacing, regions);
+  if (dimension == 2) check_regions<2>(keys, spacing, room, regions);
+  if (dimension == 3) check_regions<3>(keys, spacing, room, regions);
 }
 
 template <int Dim>
@@ -259,7 +290,8 @@ template <int Dim>
 bool PlacedRegion<Dim>::point(std::int64_t k, Vector<Dim>& position) const {
   const Vector<Dim> own = lattice_.point(k);
   position = placement_(own);
-  return shape_->distance(own) < 0.0;
+  constexpr double on_outline = 1e-6;  // nearer to it, rounding would decide [dp]
+  return shape_->distance(own) < -on_outline * lattice_.spacing;
 }
 
 template <int Dim>

@@ -134,16 +134,18 @@ void check_box(Keys& keys, const PeriodicBoxSettings& box, const SceneInputs& in
 /// The smallest box around all regions, in two or three dimensions [m].
 Box<3> bounds_of(const SceneSettings& s, const SceneInputs& in) {
   Box<3> around;
-  const auto add = [&]<int Dim>(const Box<Dim>& box, bool first) {
+  bool first = true;
+  const auto add = [&]<int Dim>(const Box<Dim>& box) {
     for (int k = 0; k < Dim; ++k) {
       around.low[k] = first ? box.low[k] : std::min(around.low[k], box.low[k]);
       around.high[k] = first ? box.high[k] : std::max(around.high[k], box.high[k]);
     }
+    first = false;
   };
   for (const FluidRegion& region : s.regions) {
     if (!has_shape(region, in.dimension)) continue;
-    if (in.dimension == 2) add(PlacedRegion<2>(region, in.spacing).bounds(), &region == &s.regions.front());
-    if (in.dimension == 3) add(PlacedRegion<3>(region, in.spacing).bounds(), &region == &s.regions.front());
+    if (in.dimension == 2) add(PlacedRegion<2>(region, in.spacing).bounds());
+    if (in.dimension == 3) add(PlacedRegion<3>(region, in.spacing).bounds());
   }
   return around;
 }
@@ -151,6 +153,15 @@ Box<3> bounds_of(const SceneSettings& s, const SceneInputs& in) {
 double longest_side(const Box<3>& box) {
   const Vector<3> size = box.high - box.low;
   return std::max({size[0], size[1], size[2]});
+}
+
+/// The largest gravity at any time [m/s^2].
+double largest_gravity(const Keys& keys, const FluidSettings& fluid) {
+  const auto strength = [&](const Numbers& g) { return keys.usable(g) ? std::hypot(g[0], g[1], g[2]) : 0.0; };
+  if (fluid.gravity_at.empty()) return strength(fluid.gravity);
+  double largest = 0.0;
+  for (const GravityEntry& entry : fluid.gravity_at) largest = std::max(largest, strength(entry.value));
+  return largest;
 }
 
 /// The fastest start, and a fall over the fluid's longest side [m/s].
@@ -163,7 +174,7 @@ double region_speed(const Keys& keys, const SceneSettings& s, const SceneInputs&
     for (const double slope : region.gradient) rate = std::max(rate, std::abs(slope));
     fastest = std::max(fastest, std::hypot(region.velocity[0], region.velocity[1], region.velocity[2]) + rate * side);
   }
-  const double pull = in.central_force * in.central_force * side;
+  const double pull = in.fluid.central_force * in.fluid.central_force * side;
   return std::sqrt(fastest * fastest + 2.0 * (gravity + pull) * side);
 }
 
@@ -178,6 +189,14 @@ void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   }
 }
 
+/// Where the regions may have fluid [m].
+Box<3> room_of(const Keys& keys, const SceneSettings& s) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (keys.usable(s.tank.size)) return {{}, {s.tank.size}};
+  if (keys.usable(s.domain.low, s.domain.high)) return {{s.domain.low}, {s.domain.high}};
+  return {{{-infinity, -infinity, -infinity}}, {{infinity, infinity, infinity}}};
+}
+
 void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   if (!keys.usable(s.regions, s.domain.low, s.domain.high)) return;
   if (s.regions.empty()) {
@@ -185,12 +204,18 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     return;
   }
   if (!keys.usable(in.dimension, in.spacing)) return;
+  const bool has_low = keys.given(s.domain.low), has_high = keys.given(s.domain.high);
   double volume = 1.0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(in.dimension); ++k) {
-    volume *= s.domain.high[k] - s.domain.low[k];
-    if (s.domain.high[k] - s.domain.low[k] > 2.0 * in.spacing) continue;
-    keys.mistake(s.domain.high, fmt::format("the bounds are narrower than two particles; allowed: above {} (m)",
-                                            number_text(s.domain.low[k] + 2.0 * in.spacing)));
+    const double low = s.domain.low[k], high = s.domain.high[k];
+    volume *= high - low;
+    if (high - low > 2.0 * in.spacing || (!has_low && !has_high)) continue;  // the default has room around any fluid
+    constexpr const char* what = "the bounds are narrower than two particles; allowed: {} {} (m)";
+    if (has_high) {
+      keys.mistake(s.domain.high, fmt::format(what, "above", number_text(low + 2.0 * in.spacing)));
+    } else {
+      keys.mistake(s.domain.low, fmt::format(what, "below", number_text(high - 2.0 * in.spacing)));
+    }
     return;
   }
   check_count(keys, in, volume);
@@ -239,7 +264,7 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
 }
 
 double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  const double gravity = keys.usable(in.gravity) ? std::hypot(in.gravity[0], in.gravity[1], in.gravity[2]) : 0.0;
+  const double gravity = largest_gravity(keys, in.fluid);
   if (keys.usable(s.jet.speed, s.jet.width, s.jet.inlet_distance))
     return std::hypot(s.jet.speed, std::sqrt(2.0 * gravity * s.jet.inlet_distance * s.jet.width));
   if (keys.usable(s.tank.fluid_height) && s.regions.empty()) return std::sqrt(2.0 * gravity * s.tank.fluid_height);
@@ -261,7 +286,7 @@ void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
 
 void check_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in, bool mirrored) {
   if (!keys.usable(s.geometry)) return;
-  if (keys.usable(in.dimension, in.spacing)) check_fluid(keys, in.dimension, in.spacing, s.regions);
+  if (keys.usable(in.dimension, in.spacing)) check_fluid(keys, in.dimension, in.spacing, room_of(keys, s), s.regions);
   switch (s.geometry) {
     case SceneType::jet:
       return check_jet(keys, s.jet, s.plate, in);

@@ -9,6 +9,8 @@
 namespace impinge {
 namespace {
 
+constexpr double least_gap = 0.25;  // between a region's particles and a wall [dp]
+
 /// How far a position lies inside the side walls and the floor [m]; 0 between them.
 template <int Dim>
 double depth_in_walls(const Vector<Dim>& position, const Vector<Dim>& size) {
@@ -73,7 +75,10 @@ Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank, con
       particles.append({position, {}, 0.0, 0.0, k, type});
     });
     const auto is_inside = [&](const Vector<Dim>& position) {
-      return depth_in_walls(position, size) == 0.0 && position[Dim - 1] < size[Dim - 1];
+      const double gap = least_gap * lattice.spacing;
+      for (int axis = 0; axis < Dim; ++axis)
+        if (position[axis] < gap || position[axis] > size[axis] - (axis < Dim - 1 ? gap : 0.0)) return false;
+      return true;
     };
     fill_regions<Dim>(fluid, lattice.count(), rank, ranks, is_inside, particles);
   };

@@ -40,6 +40,20 @@ TEST(BodyForce, PullsToACentreInProportionToTheDistance) {
   EXPECT_DOUBLE_EQ(force.largest(MPI_COMM_SELF, particles), 12.0);
 }
 
+TEST(BodyForce, InSpaceAddsTheTableAndThePull) {
+  FluidSettings fluid;
+  fluid.gravity_at = {{1.0, {1.0, 2.0, -3.0}}};
+  fluid.central_force = 0.5;
+  fluid.force_center = {0.0, 0.0, 4.0};
+  for (const double time : {0.0, 1.0, 5.0})
+    EXPECT_EQ(BodyForce<3>(fluid, time).at({{4.0, 0.0, 0.0}}), (Vector<3>{{0.0, 2.0, -2.0}}));
+  fluid.gravity_at = {{1.0, {1.0, 2.0, -3.0}}, {1.5, {2.0, 4.0, -6.0}}};
+  fluid.central_force = 0.0;
+  EXPECT_EQ(BodyForce<3>(fluid, 1.0).at({}), (Vector<3>{{1.0, 2.0, -3.0}}));
+  EXPECT_EQ(BodyForce<3>(fluid, 1.5).at({}), (Vector<3>{{2.0, 4.0, -6.0}}));
+  EXPECT_DOUBLE_EQ(BodyForce<3>(fluid, 1.25).largest(MPI_COMM_SELF, {}), 1.5 * std::sqrt(14.0));
+}
+
 TEST(TimeStep, IsTheSmallestOfItsLimits) {
   constexpr double spacing = 0.01;
   const auto choose = [](double dt, double max_speed, double acceleration, double last, int halvings = 0) {
@@ -58,6 +72,8 @@ TEST(TimeStep, IsTheSmallestOfItsLimits) {
   EXPECT_EQ(choose(1.0, 0.0, 9.81, 1.0), std::pair(0.2 * std::sqrt(spacing / 9.81), StepLimit::force));
   EXPECT_EQ(choose(1.0, 0.0, 0.0, 1e-3), std::pair(1.1 * 1e-3, StepLimit::growth));
   EXPECT_EQ(choose(1e-3, 1.0, 10.0, 1e-3, 2), std::pair(0.25e-3, StepLimit::retry));
+  EXPECT_EQ(choose(1.0, 0.0, 9.81, 1.0, 3), std::pair(0.2 * std::sqrt(spacing / 9.81) / 8.0, StepLimit::retry));
+  EXPECT_EQ(choose(1e-3, 0.0, 0.0, 0.0), std::pair(1e-3, StepLimit::case_dt));
   // The first step has a quarter of the Courant number.
   EXPECT_DOUBLE_EQ(choose(1.0, 4.0, 0.0, 0.0).first, 0.05 * spacing / 4.0);
 }
@@ -144,6 +160,44 @@ TYPED_TEST(Mirrors, PutBackWhatHasPassedThem) {
   EXPECT_EQ(particles.velocity[0][1], -2.0);
   EXPECT_LT(particles.position[1][0], box.high[0]);
   EXPECT_EQ(particles.position[2][0], -1.0);
+}
+
+TYPED_TEST(Mirrors, PutBackToTheInsideAtAnyPlaceOfAnyWall) {
+  constexpr int Dim = TypeParam::value;
+  constexpr double spacing = 0.01;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (const double corner : {0.0, -3.0, 1e3, -1e6}) {
+    Box<Dim> box;
+    for (int k = 0; k < Dim; ++k) {
+      box.low[k] = corner;
+      box.high[k] = corner + 1.0;
+    }
+    const auto walls = mirrors_of<Dim>(Edge::mirror, box, 2.5 * spacing);
+    for (int trial = 0; trial < 500; ++trial) {
+      Particles<Dim> particles;
+      ParticleRecord<Dim> record{};
+      Vector<Dim> expected, velocity;
+      for (int k = 0; k < Dim; ++k) {
+        record.velocity[k] = velocity[k] = share(random) - 0.5;
+        expected[k] = record.position[k] = corner + 0.1 + 0.8 * share(random);
+        const double depth = share(random) < 0.4 ? 0.0 : std::pow(10.0, -18.0 * share(random)) * spacing;
+        if (share(random) < 0.5) continue;  // away from the walls of this axis
+        const bool is_low = share(random) < 0.5;
+        record.position[k] = is_low ? box.low[k] - depth : box.high[k] + depth;
+        expected[k] = is_low ? 2.0 * box.low[k] - record.position[k] : 2.0 * box.high[k] - record.position[k];
+        if (record.position[k] < box.low[k] || record.position[k] > box.high[k]) velocity[k] = -velocity[k];
+      }
+      particles.append(record);
+      walls.confine(particles, spacing);
+      for (int k = 0; k < Dim; ++k) {
+        EXPECT_GT(particles.position[0][k], box.low[k]);
+        EXPECT_LT(particles.position[0][k], box.high[k]);
+        EXPECT_NEAR(particles.position[0][k], expected[k], 2e-9 * spacing + 4e-15 * std::abs(corner));
+        EXPECT_EQ(particles.velocity[0][k], velocity[k]);
+      }
+    }
+  }
 }
 
 }  // namespace

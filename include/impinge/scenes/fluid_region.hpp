@@ -40,9 +40,11 @@ void declare_fluid(Keys& keys, std::vector<FluidRegion>& regions);
 /// Sets names and centres that are not given. `dimension`: of space.
 void derive_fluid(const Keys& keys, int dimension, std::vector<FluidRegion>& regions);
 
-/// Notes shapes that do not exist in the dimension or have no inside, names that are used twice, and regions that
-/// overlap by more than a quarter of the spacing. `spacing`: dp [m]. The keys of `dimension` and `spacing` are usable.
-void check_fluid(Keys& keys, int dimension, double spacing, const std::vector<FluidRegion>& regions);
+/// Notes shapes that do not exist in the dimension or have no inside, names that are used twice, regions that overlap
+/// by more than a quarter of the spacing, and regions outside `room`, where the scene has fluid [m]. `spacing`: dp [m].
+/// The keys of `dimension` and `spacing` are usable.
+void check_fluid(Keys& keys, int dimension, double spacing, const Box<3>& room,
+                 const std::vector<FluidRegion>& regions);
 
 /// True where the region's numbers make a shape in this dimension.
 bool has_shape(const FluidRegion& region, int dimension);

@@ -2,6 +2,7 @@
 // The short forms of a scene in a case file. SI units.
 
 #include "impinge/config/key.hpp"
+#include "impinge/method/settings.hpp"
 #include "impinge/scenes/fluid_region.hpp"
 
 namespace impinge {
@@ -56,8 +57,7 @@ struct SceneInputs {
   const int& dimension;
   const double& spacing;           ///< dp [m]
   const double& laplacian_radius;  ///< [dp]
-  const Numbers& gravity;          ///< [m/s^2]
-  const double& central_force;     ///< B of the force -B^2 r [1/s]
+  const FluidSettings& fluid;
 };
 
 /// Declares the tables of the scenes. `geometry` must be declared before.
