@@ -12,6 +12,7 @@
 #include "impinge/cases/make_simulation.hpp"
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/run_directory.hpp"
+#include "region_cases.hpp"
 #include "shared_directory.hpp"
 #include "shipped_case.hpp"
 
@@ -116,6 +117,28 @@ TEST_F(Restart, ContinuesTanks) {
   expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight}), 30);
   expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight, "fluid.viscosity=1e-3", "time.dt=1e-4"}), 15);
   expect_the_same_run<3>(shipped_case("hydrostatic-3d.toml", {tight}), 6);
+}
+
+TEST_F(Restart, ContinuesRegionsUnderForcesInSpaceAndTime) {
+  expect_the_same_run<2>(drops_case(), 40);
+  expect_the_same_run<2>(column_case(), 60);
+  expect_the_same_run<3>(sphere_case(), 6);
+}
+
+// Fluid has left the bounds before and after.
+TEST_F(Restart, ContinuesWhereFluidIsLost) {
+  const Case config = column_case({"tank.size=[1.0, 0.4]", "pressure.tolerance=1e-6"});
+  auto whole = make_simulation<2>(MPI_COMM_WORLD, config);
+  while (whole.report().lost == 0 && whole.report().time < 2.0) whole.step();
+  ASSERT_GT(whole.report().lost, 0);
+  write(MPI_COMM_WORLD, path("x.checkpoint"), whole);
+  const std::int64_t before = whole.report().lost;
+  for (int step = 0; step < 200; ++step) whole.step();
+  EXPECT_GT(whole.report().lost, before);
+  const auto from = read_checkpoint<2>(MPI_COMM_WORLD, path("x.checkpoint"));
+  auto again = make_simulation<2>(MPI_COMM_WORLD, config, &from);
+  for (int step = 0; step < 200; ++step) again.step();
+  expect_the_same_state(again, whole);
 }
 
 TEST_F(Restart, ContinuesWithAnEmptyRank) {

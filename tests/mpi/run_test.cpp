@@ -9,6 +9,7 @@
 
 #include "gather.hpp"
 #include "impinge/cases/make_simulation.hpp"
+#include "region_cases.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -81,51 +82,6 @@ void expect_the_same_run(const Case& config, int steps) {
                farthest, here.report().kinetic_energy, here.report().out);
 }
 
-/// Two regions without walls that a central force pulls together.
-Case drops_case(const std::vector<std::string>& settings = {}) {
-  std::vector<std::string> all{tight};
-  all.insert(all.end(), settings.begin(), settings.end());
-  return parse_case({{"drops.toml", R"(geometry = "scene"
-particles.spacing = 0.1
-time = {end = 10.0, dt = 1e-2}
-fluid.central_force = 1.0
-[[fluid.region]]
-shape = "circle"
-center = [0, 0]
-radius = 1.0
-gradient = [0.25, 0, 0, -0.25]
-[[fluid.region]]
-shape = "box"
-low = [1.1, -0.3]
-high = [1.7, 0.3]
-velocity = [-0.5, 0.2]
-spin = 0.5
-)"}},
-                    all);
-}
-
-/// A column of water in a tank that is then tilted.
-Case column_case(const std::vector<std::string>& settings = {}) {
-  std::vector<std::string> all{tight};
-  all.insert(all.end(), settings.begin(), settings.end());
-  return parse_case({{"column.toml", R"(geometry = "tank"
-particles.spacing = 0.05
-time = {end = 10.0, dt = 2e-3}
-tank.size = [1.0, 0.5]
-[[fluid.region]]
-shape = "box"
-low = [0, 0]
-high = [0.4, 0.4]
-[[fluid.gravity_at]]
-time = 0
-value = [0, -9.81]
-[[fluid.gravity_at]]
-time = 0.1
-value = [9.81, -9.81]
-)"}},
-                    all);
-}
-
 class RunOfScheme : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, RunOfScheme, testing::Values("scheme=consistent", "scheme=paper"),
                          [](const auto& test) { return test.param.substr(test.param.find('=') + 1); });
@@ -148,15 +104,30 @@ TEST(Run, OfRegionsUnderACentralForceIsThatOfASingleRank) { expect_the_same_run<
 
 TEST(Run, OfAColumnUnderGravityInTimeIsThatOfASingleRank) { expect_the_same_run<2>(column_case(), 60); }
 
+TEST(Run, OfASphereUnderACentralForceIsThatOfASingleRank) { expect_the_same_run<3>(sphere_case(), 15); }
+
 TEST(Run, GoesOnWhereFluidLeavesATankWithAnExactBalance) {
-  auto simulation =
-      make_simulation<2>(MPI_COMM_WORLD, column_case({"tank.size=[1.0, 0.4]", "pressure.tolerance=1e-6"}));
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, column_case({"tank.size=[1.0, 0.4]"}));
   while (simulation.report().time < 1.2) {
     simulation.step();
     const StepReport& report = simulation.report();
     ASSERT_EQ(report.in, report.out + report.lost + report.fluid) << "step " << report.step;
   }
   EXPECT_GT(simulation.report().lost, 0);
+  EXPECT_LT(simulation.report().lost, simulation.report().in);
+}
+
+TEST(Run, EndsWhereFluidLeavesATankIfItIsToldTo) {
+  const Case config = column_case({"tank.size=[1.0, 0.4]", "domain.outside=error"});
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
+  std::string end = "none";
+  try {
+    while (simulation.report().time < 1.2) simulation.step();
+  } catch (const SolveError& error) {
+    EXPECT_EQ(error.phase(), Phase::redistribute);
+    end = error.what();
+  }
+  EXPECT_NE(end.find("left the domain other than by an outlet"), std::string::npos) << end;
 }
 
 TEST(Run, IsThatOfASingleRankWithPTScotch) {
