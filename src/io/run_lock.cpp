@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -55,10 +56,27 @@ Owner this_process() {
   return {host, getpid(), start_of(getpid()), job};
 }
 
+Owner owner_in(const std::string& path) {
+  Owner owner;
+  std::ifstream(path) >> owner.host >> owner.process >> owner.started >> owner.job;
+  return owner;
+}
+
 bool is_alive(const Owner& owner, const std::string& path) {
   if (owner.host == this_process().host) return start_of(owner.process) == owner.started;
   struct stat status {};
   return stat(path.c_str(), &status) == 0 && std::difftime(std::time(nullptr), status.st_mtime) < oldest_beat;
+}
+
+/// Takes a dead owner's lock away. Another process may do so at the same time and have put its own in the place: that
+/// one is put back.
+void remove_dead_lock(const std::string& path) {
+  const Owner self = this_process();
+  const std::string taken = fmt::format("{}.{}.{}", path, self.host, self.process);
+  if (rename(path.c_str(), taken.c_str()) != 0) return;
+  std::error_code ignored;
+  if (is_alive(owner_in(taken), taken)) fs::create_hard_link(taken, path, ignored);
+  unlink(taken.c_str());
 }
 
 }  // namespace
@@ -71,12 +89,15 @@ RunLock::RunLock(const std::string& directory, const std::string& name)
       const Owner self = this_process();
       const std::string text = fmt::format("{} {} {} {}\n", self.host, self.process, self.started, self.job);
       const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+      const int reason = errno;
       close(file);
       if (written) return;
+      unlink(path_.c_str());
+      errno = reason;
+      break;
     }
     if (errno != EEXIST) break;
-    Owner owner;
-    std::ifstream(path_) >> owner.host >> owner.process >> owner.started >> owner.job;
+    const Owner owner = owner_in(path_);
     if (is_alive(owner, path_)) {
       const std::string job = owner.job == "-" ? "" : fmt::format(", job {}", owner.job);
       const std::string own = std::exchange(path_, "");
@@ -85,7 +106,7 @@ RunLock::RunLock(const std::string& directory, const std::string& name)
                        "another output.directory",
                        own, owner.process, owner.host, job)});
     }
-    unlink(path_.c_str());
+    remove_dead_lock(path_);
   }
   const std::string reason = std::strerror(errno);
   throw FileError(fmt::format("cannot write {}: {}", std::exchange(path_, ""), reason));

@@ -219,18 +219,21 @@ void Simulation<Dim>::redistribute() {
   migrate();
 }
 
+template <int Dim>
+void Simulation<Dim>::count_strays(const Strays& strays) {
+  const std::int64_t lost = sum_over_ranks(comm_, strays.outside);
+  report_.lost += lost;
+  if (any_rank(comm_, strays.not_finite > 0)) fail(Phase::redistribute, "a position is not a number");
+  if (settings_.outside == Outside::error || report_.step == 0)  // a scene fits into its bounds
+    fail(Phase::redistribute, fmt::format("{} particle(s) left the domain other than by an outlet", lost));
+}
+
 // Particles to their ranks, and what depends on who has which.
 template <int Dim>
 void Simulation<Dim>::migrate() {
   Particles<Dim>& particles = state_.particles;
   const Strays strays = state_.decomposition.migrate(particles);
-  const std::int64_t lost = sum_over_ranks(comm_, strays.outside);
-  const bool is_finite = !any_rank(comm_, strays.not_finite > 0);
-  report_.lost += lost;
-  if (!is_finite) fail(Phase::redistribute, "a position is not a number");
-  const bool is_fatal = settings_.outside == Outside::error || report_.step == 0;  // a scene fits into its bounds
-  if (lost > 0 && is_fatal)
-    fail(Phase::redistribute, fmt::format("{} particle(s) left the domain other than by an outlet", lost));
+  if (sum_over_ranks(comm_, strays.outside + strays.not_finite) > 0) count_strays(strays);
   state_.decomposition.build_halo(particles);
   state_.walls.append_images(particles);
   state_.wall_normal.assign(particles.position.size(), {});

@@ -16,6 +16,7 @@
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/output.hpp"
 #include "impinge/io/run_directory.hpp"
+#include "impinge/io/together.hpp"
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
@@ -302,7 +303,9 @@ bool start_run(MPI_Comm comm, const Case& config) {
   const bool first = rank_of(comm) == 0;
   check_output(comm, config);
   // An earlier run stays where it is until this one is known to start.
-  if (any_rank(comm, first && holds_run(config.output.directory, config.name))) try_first_step<Dim>(comm, config);
+  bool has_earlier_run = false;
+  on_first_rank(comm, [&] { has_earlier_run = holds_run(config.output.directory, config.name); });
+  if (any_rank(comm, has_earlier_run)) try_first_step<Dim>(comm, config);
   auto simulation = make_simulation<Dim>(comm, config);
   Output output(comm, files_of(config));
   if (first && !output.set_aside().empty())

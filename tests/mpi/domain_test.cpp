@@ -6,7 +6,6 @@
 #include "cloud.hpp"
 #include "dimensions.hpp"
 #include "gather.hpp"
-#include "impinge/boundaries/wall.hpp"
 #include "impinge/core/mpi.hpp"
 #include "impinge/method/operators.hpp"
 #include "impinge/parallel/decomposition.hpp"

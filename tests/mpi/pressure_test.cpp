@@ -9,7 +9,6 @@
 
 #include "cloud.hpp"
 #include "gather.hpp"
-#include "impinge/boundaries/wall.hpp"
 #include "impinge/core/mpi.hpp"
 #include "impinge/method/pressure/solver.hpp"
 #include "impinge/method/pressure/two_level.hpp"

@@ -10,7 +10,6 @@
 
 #include "cloud.hpp"
 #include "dimensions.hpp"
-#include "impinge/boundaries/wall.hpp"
 #include "impinge/core/mpi.hpp"
 #include "impinge/parallel/decomposition.hpp"
 #include "impinge/particles/kernel.hpp"

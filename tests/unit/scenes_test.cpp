@@ -12,7 +12,6 @@
 #include <random>
 #include <set>
 
-#include "impinge/boundaries/wall.hpp"
 #include "impinge/core/mpi.hpp"
 #include "impinge/particles/cell_grid.hpp"
 #include "impinge/scenes/analytic_jet.hpp"

@@ -61,10 +61,7 @@ class MirrorWalls {
   /// Gives the images the values of their originals: as they are, moved, or turned as a direction.
   template <class T>
   void copy(std::vector<T>& field) const {
-    for_images([&](std::size_t k, std::size_t at, std::size_t from) {
-      field[at] = field[from];
-      (void)k;
-    });
+    for_images([&](std::size_t, std::size_t at, std::size_t from) { field[at] = field[from]; });
   }
   void copy_positions(std::vector<Vector<Dim>>& position) const {
     for_images([&](std::size_t k, std::size_t at, std::size_t from) {

@@ -1,5 +1,5 @@
 #pragma once
-// Files that could not be written or read.
+// Errors of the input and of files. SolveError is in method/phase.hpp.
 
 #include <stdexcept>
 #include <string>

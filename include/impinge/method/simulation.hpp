@@ -16,7 +16,8 @@
 
 namespace impinge {
 
-/// The MPS method on the particles of all ranks. Every public function that is not const is collective.
+/// The MPS method on the particles of all ranks. Every public function that is not const is collective, and so is
+/// imbalance().
 template <int Dim>
 class Simulation {
  public:
@@ -62,6 +63,7 @@ class Simulation {
   void pass_boundaries();
   void redistribute();
   void migrate();
+  void count_strays(const Strays& strays);
   void find_neighbours();
   void solve_pressure(const BodyForce<Dim>& force, double reference_speed);
   void correct(const MotionRule& rule, double reference_speed);

@@ -12,7 +12,8 @@
 
 namespace impinge {
 
-/// The pairs of one particle: local indices of the neighbours (owned or halo) and the kernel's weights W(r_ij) [-].
+/// The pairs of one particle: local indices of the neighbours (owned, halo or image) and the kernel's weights W(r_ij)
+/// [-].
 struct PairRow {
   std::span<const int> index;
   std::span<const double> weight;
@@ -45,8 +46,8 @@ class NeighbourSearch {
   NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius, double far_radius,
                   bool walls_measure = false);
 
-  /// Reads positions and types of owned particles (sorted) and halo. Inlet particles and ghosts get empty rows. Not
-  /// collective.
+  /// Reads positions and types of owned particles (sorted), halo and images. Inlet particles and ghosts get empty rows.
+  /// Not collective.
   void search(const Particles<Dim>& particles);
 
   const PairList& near() const { return near_; }

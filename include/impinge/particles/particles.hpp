@@ -1,5 +1,5 @@
 #pragma once
-// The particles of one rank, as a structure of arrays: [owned | halo].
+// The particles of one rank, as a structure of arrays: [owned | halo | mirror images].
 
 #include <cstdint>
 #include <span>
@@ -28,8 +28,8 @@ struct ParticleRecord {
   ParticleType type;
 };
 
-/// Structure of arrays. Entries [0, owned) belong to this rank; entries [owned, size()) are the halo: copies of
-/// other ranks' particles (or periodic and mirror images) within reach. All arrays have length size().
+/// Structure of arrays. Entries [0, owned) belong to this rank. Behind them stands the halo, copies of other ranks'
+/// particles and periodic images within reach, and behind it the mirror images. All arrays have length size().
 template <int Dim>
 struct Particles {
   int owned = 0;

@@ -147,11 +147,12 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
         used += role == PressureRole::unknown && j > i ? 1 : 0;
         continue;
       }
-      const auto image = static_cast<std::size_t>(j - first_image);
-      if (j >= first_image) j = equation.original[image];
+      const bool is_image = j >= first_image;
+      const auto image = static_cast<std::size_t>(is_image ? j - first_image : 0);
+      if (is_image) j = equation.original[image];
       const PressureRole role = equation.role[static_cast<std::size_t>(j)];
       if (role == PressureRole::absent) continue;
-      if (image < equation.image_offset.size()) offset += weight * equation.image_offset[image];
+      if (is_image && !equation.image_offset.empty()) offset += weight * equation.image_offset[image];
       const PetscInt other = equation.row[static_cast<std::size_t>(j)];
       if (other == equation.row[self]) continue;  // its own image
       sum += weight;
