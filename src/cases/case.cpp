@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double most_intervals = 1e6;  // of output until time.end
+
 void declare(Keys& keys, Case& c) {
   keys.add("name", c.name, "name of the case, in the names of its output files",
            {.fixed = true, .fallback = "the case file's stem"});
@@ -29,8 +31,11 @@ void declare(Keys& keys, Case& c) {
   keys.add("output.average_start", c.average_start, "start of the time average of the wall pressure",
            {.unit = "s", .range = not_negative, .fallback = "0.8 x time.end"});
   keys.add("checkpoint.steps", c.checkpoint.steps,
-           "steps from one checkpoint to the next; 0: none by steps. With either key, a run also ends with one",
+           "steps from one checkpoint to the next; 0: none by steps. With any of these keys, a run also ends with one",
            {.range = from_to(0, 1e9)});
+  keys.add("checkpoint.interval", c.checkpoint.interval,
+           "simulated time from one checkpoint to the next; 0: none by simulated time",
+           {.unit = "s", .range = not_negative});
   keys.add("checkpoint.minutes", c.checkpoint.minutes,
            "wall-clock time from one checkpoint to the next; 0: none by time", {.unit = "min", .range = not_negative});
   declare_parallel(keys, c.parallel);
@@ -55,6 +60,12 @@ void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
   if (keys.given(c.average_start) && keys.usable(c.average_start, c.time.end) && c.average_start >= c.time.end) {
     keys.mistake(c.average_start,
                  fmt::format("the average starts after the end; allowed: [0, {}) (s)", number_text(c.time.end)));
+  }
+  for (const double* interval : {&c.output.interval, &c.checkpoint.interval}) {
+    if (!keys.usable(*interval, c.time.end) || *interval == 0.0) continue;
+    if (const double least = c.time.end / most_intervals; *interval < least)
+      keys.mistake(*interval, fmt::format("more than a million files until time.end; allowed: 0 or from {} on (s)",
+                                          number_text(least)));
   }
   check_method(keys, c);
   check_scene(keys, c, inputs, keys.usable(c.walls.model) && c.walls.model == WallModel::mirror);

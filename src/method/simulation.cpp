@@ -59,13 +59,13 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const MethodSettings& settings, Scene
 }
 
 template <int Dim>
-void Simulation<Dim>::step() {
+void Simulation<Dim>::step(double target) {
   save(step_start_);
   report_.cold_solves = 0;
   report_.halvings = 0;
   while (true) {
     try {
-      return try_step();
+      return try_step(target);
     } catch (const SolveError& error) {
       if (error.phase() != Phase::solve || report_.halvings == most_halvings) throw;
       restore(step_start_);
@@ -75,11 +75,12 @@ void Simulation<Dim>::step() {
 }
 
 template <int Dim>
-void Simulation<Dim>::try_step() {
+void Simulation<Dim>::try_step(double target) {
   ++report_.step;
   const double spacing = settings_.particles.spacing;
   const double acceleration = BodyForce<Dim>(settings_.fluid, report_.time).largest(comm_, state_.particles);
-  choose_time_step(settings_.time, spacing, acceleration, report_);
+  choose_time_step(settings_.time, spacing, acceleration, target, report_);
+  const double end = report_.dt == target - report_.time ? target : report_.time + report_.dt;
   const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
   // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
@@ -95,7 +96,7 @@ void Simulation<Dim>::try_step() {
   find_neighbours();
   solve_pressure(force, reference_speed);
   correct(rule, reference_speed);
-  report_.time += report_.dt;
+  report_.time = end;
   measure_totals();
 }
 
@@ -107,6 +108,7 @@ void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, s
   use("step", report.step);
   use("time", report.time);
   use("dt", report.dt);
+  use("free_dt", report.free_dt);
   use("limit", report.limit);
   use("particles", report.particles);
   use("fluid", report.fluid);

@@ -16,7 +16,7 @@ constexpr HistoryColumn columns[] = {
     {"step", "", "number of the step", [](const StepReport& r, double) { return count(r.step); }},
     {"t", "s", "time at its end", [](const StepReport& r, double) { return exact(r.time); }},
     {"dt", "s", "time step", [](const StepReport& r, double) { return exact(r.dt); }},
-    {"limit", "", "what bounded dt: case (time.dt), CFL, force, growth or retry",
+    {"limit", "", "what bounded dt: case (time.dt), CFL, force, growth, retry, or target (a time of output)",
      [](const StepReport& r, double) { return std::string(step_limit_names[static_cast<std::size_t>(r.limit)]); }},
     {"particles", "", "particles of every type", [](const StepReport& r, double) { return count(r.particles); }},
     {"fluid", "", "fluid particles", [](const StepReport& r, double) { return count(r.fluid); }},

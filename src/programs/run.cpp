@@ -20,6 +20,7 @@
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
+#include "impinge/programs/schedule.hpp"
 #include "impinge/programs/stop_signals.hpp"
 
 namespace impinge {
@@ -154,11 +155,6 @@ void print_plan(const Case& config, const Plan& plan) {
   fmt::print("cells       {}, {} of them with particles (the partitioned graph)\n", plan.cells, plan.occupied);
 }
 
-/// Time of the next snapshot, a multiple of the interval after `time`.
-double next_output(double time, double interval) {
-  return interval > 0.0 ? (std::floor(time / interval + 1e-9) + 1.0) * interval : HUGE_VAL;
-}
-
 /// Tells once that fluid has left the bounds, and warns once where it is a hundredth of all.
 class LossNotice {
  public:
@@ -189,12 +185,13 @@ class Interruptions {
  public:
   enum Kind { none, checkpoint, stop };
 
-  Interruptions(MPI_Comm comm, const Case& config) : comm_(comm), config_(config.checkpoint) {}
+  Interruptions(MPI_Comm comm, const Case& config) : comm_(comm), config_(config.checkpoint), schedule_(config) {}
 
   /// The same on every rank, whichever rank's clock or signal it was. Collective.
-  Kind after_step(std::int64_t step) {
+  Kind after_step(const StepReport& report) {
     Kind kind = none;
-    if (config_.steps > 0 && step % config_.steps == 0) kind = checkpoint;
+    if (config_.steps > 0 && report.step % config_.steps == 0) kind = checkpoint;
+    if (schedule_.has_checkpoint(report.time)) kind = checkpoint;
     if (config_.minutes > 0.0 && seconds_since(last_) >= 60.0 * config_.minutes) kind = checkpoint;
     if (StopSignals::received() != 0) kind = stop;
     kind = static_cast<Kind>(max_over_ranks(comm_, kind));
@@ -209,6 +206,7 @@ class Interruptions {
   StopSignals signals_;
   MPI_Comm comm_;
   decltype(Case::checkpoint) config_;
+  Schedule schedule_;
   Clock::time_point last_ = Clock::now();
 };
 
@@ -220,11 +218,10 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
   const StepReport& report = simulation.report();
   const std::int64_t first_step = report.step;
 
-  // Steps that end within this of an instant have reached it.
-  const double tolerance = 1e-9 * config.time.end;
-  const auto finished = [&] { return report.time >= config.time.end - tolerance; };
-  double output_time = next_output(report.time + tolerance, config.output.interval);
-  const bool has_checkpoints = config.checkpoint.steps > 0 || config.checkpoint.minutes > 0.0;
+  const Schedule schedule(config);
+  const auto finished = [&] { return schedule.is_over(report.time); };
+  const auto& [steps, interval, minutes] = config.checkpoint;
+  const bool has_checkpoints = steps > 0 || interval > 0.0 || minutes > 0.0;
   Interruptions interruptions(comm, config);
   bool options_checked = false;
   Progress progress(report.time, config.time.end, first);
@@ -232,7 +229,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
   while (!finished()) {
     const auto step_start = Clock::now();
     try {
-      simulation.step();
+      simulation.step(schedule.next(report.time));
     } catch (const SolveError& error) {
       output.record(report, seconds_since(step_start));
       const std::string path = output.save(simulation, "failed", error.what());
@@ -248,11 +245,10 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
     if (first) losses.update(report);
     if (finished()) {
       output.save(simulation, "finished");
-    } else if (report.time >= output_time - tolerance) {
+    } else if (schedule.has_snapshot(report.time)) {
       output.save(simulation, "running");
-      output_time = next_output(report.time + tolerance, config.output.interval);
     }
-    const Interruptions::Kind interruption = interruptions.after_step(report.step);
+    const Interruptions::Kind interruption = interruptions.after_step(report);
     if (finished() ? has_checkpoints : interruption != Interruptions::none) {
       const std::string path = output.save_checkpoint(simulation);
       if (interruption == Interruptions::stop && !finished()) {
@@ -294,7 +290,7 @@ RunFiles files_of(const Case& config) { return {config.output.directory, config.
 template <int Dim>
 void try_first_step(MPI_Comm comm, const Case& config) {
   auto trial = make_simulation<Dim>(comm, config);
-  trial.step();
+  trial.step(Schedule(config).next(0.0));
   refuse_unused_options(comm, trial.pressure_solver().default_options());
 }
 

@@ -93,9 +93,20 @@ class Restart(Reliability):
         self.assertIn(f"from step {steps}", self.impinge("--restart", "out").stdout)
         self.expect_the_same_run("out", "whole")
 
+    def test_goes_on_bitwise_between_times_of_output(self):
+        settings = ("checkpoint.interval=0.021", "output.interval=0.016", "checkpoint.minutes=0")
+        self.run_case("whole", *settings)
+        self.run_case("out", *settings)
+        before_the_end, at_the_end = self.files("out", "checkpoint")
+        at_the_end.unlink()
+        with h5py.File(before_the_end) as file:
+            self.assertEqual(file.attrs["time"], 4 * 0.021)
+        self.impinge("--restart", "out")
+        self.expect_the_same_run("out", "whole")
+
     def test_prolongs_a_run_elsewhere_on_other_ranks_and_refuses_changes(self):
         self.run_case("whole", "checkpoint.minutes=0", "pressure.tolerance=1e-12")
-        self.run_case("out", "time.end=0.05", "output.average_start=0.04", "pressure.tolerance=1e-12")
+        self.run_case("out", "time.end=0.05", "output.average_start=0.03", "pressure.tolerance=1e-12")
         (self.directory / "out").rename(self.directory / "moved")
         done = self.impinge("--restart", "moved", "--set", "particles.spacing=0.01", "--set", "time.end=0.1", code=2)
         self.assertIn("--set: particles.spacing = 0.01: a restart cannot change this key; allowed: 0.02", done.stderr)
@@ -206,7 +217,7 @@ class Signals(Reliability):
                 os.kill(run.pid, getattr(signal, name))  # mpirun passes SIGUSR1 on
             step = self.expect_a_stop(run, name)
             last = float(self.history("out")[-1]["t"])
-            end = last + 0.02
+            end = last + 0.05  # far enough for the stopped run not to have fitted its steps to it
             self.impinge("--restart", "out", "--set", f"time.end={end}")
             self.assertGreater(len(self.history("out")), step)
             self.run_case("whole", f"time.end={end}", "checkpoint.minutes=0")

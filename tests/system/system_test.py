@@ -180,7 +180,7 @@ class Run(System):
         self.assertIn("in - out - lost - stored = 0", done.stdout)
         history = self.history()
         self.assertEqual([int(row["step"]) for row in history], list(range(1, len(history) + 1)))
-        self.assertAlmostEqual(float(history[-1]["t"]), 0.05, delta=3.2e-3)
+        self.assertEqual(float(history[-1]["t"]), 0.05)
         for row in history:
             self.assertEqual(int(row["in"]) - int(row["out"]) - int(row["fluid"]), 0)
             self.assertLessEqual(float(row["residual"]), 1e-6)
@@ -204,7 +204,7 @@ class Run(System):
             self.assertEqual(len(np.unique(file["VTKHDF/PointData/id"])), len(points))
             self.assertEqual(set(file["VTKHDF/PointData/rank"][:]), {0, 1, 2})
             wall = file["wall"]
-            self.assertAlmostEqual(wall.attrs["window_begin"], 0.01, delta=3.2e-3)
+            self.assertAlmostEqual(wall.attrs["window_begin"], 0.01, delta=1e-12)
             self.assertEqual(wall.attrs["window_end"], file.attrs["time"])
             self.assertEqual(len(wall["mean_pressure"]), np.sum(file["VTKHDF/PointData/type"][:] == 2))
             # The case text in the file is a case by itself: it runs again.
@@ -223,6 +223,31 @@ class Run(System):
         # A second run replaces the first.
         self.run_case("--set", "time.end=0.008")
         self.assertEqual(len(self.snapshots()), 2)
+
+    def test_output_falls_on_its_times(self):
+        done = self.run_case("--set", "time.end=0.06", "--set", "output.interval=0.014", "--set",
+                             "output.average_start=0.0333", "--set", "checkpoint.interval=0.025")
+        self.assertIn("t 0.06/0.06 s (100 %)", done.stdout)
+
+        def times_of(paths):
+            for path in paths:
+                with h5py.File(path) as file:
+                    yield file.attrs["time"]
+
+        self.assertEqual(list(times_of(self.snapshots())), [*(k * 0.014 for k in range(5)), 0.06])
+        self.assertEqual(list(times_of(sorted((self.directory / "out").glob("*.checkpoint")))), [0.05, 0.06])
+        with h5py.File(self.snapshots()[-1]) as file:
+            self.assertAlmostEqual(file["wall"].attrs["window_begin"], 0.0333, delta=1e-12)
+        # Between two times of output, the steps are equal.
+        steps = [float(row["dt"]) for row in self.history() if 0.014 < float(row["t"]) <= 0.025]
+        self.assertEqual(len(steps), 4)
+        for dt in steps:
+            self.assertAlmostEqual(dt, 0.011 / 4, delta=1e-12)
+        self.assertEqual(self.history()[-1]["limit"], "target")
+        # An end before the first whole step.
+        done = self.run_case("--set", "time.end=3e-6")
+        self.assertIn("(100 %)", done.stdout)
+        self.assertEqual(float(self.history()[-1]["t"]), 3e-6)
 
     def test_vtk_reads_snapshots_also_with_an_empty_rank(self):
         tank = ROOT / "input/hydrostatic.toml"

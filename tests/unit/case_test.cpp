@@ -145,6 +145,16 @@ TEST(Case, TheSchemeSetsDefaults) {
   EXPECT_EQ(different, 1 + std::size(scheme_keys));
 }
 
+TEST(Case, IntervalsMakeAtMostAMillionFiles) {
+  for (const std::string key : {"output.interval", "checkpoint.interval"}) {
+    EXPECT_EQ(mistakes_in(key + " = 4e-6"),
+              Texts{"case.toml:1: " + key +
+                    " = 4e-06: more than a million files until time.end; allowed: 0 or from 5e-06 on (s)"});
+    EXPECT_EQ(mistakes_in(key + " = 5e-6"), Texts{});
+    EXPECT_EQ(mistakes_in(key + " = -1").size(), 1u);
+  }
+}
+
 TEST(Case, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
   EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_speed, 0.0);
   const Case both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");

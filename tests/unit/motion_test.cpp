@@ -64,7 +64,8 @@ TEST(TimeStep, IsTheSmallestOfItsLimits) {
     report.dt = last;
     report.max_speed = max_speed;
     report.halvings = halvings;
-    choose_time_step(time, spacing, acceleration, report);
+    report.free_dt = last;
+    choose_time_step(time, spacing, acceleration, HUGE_VAL, report);
     return std::pair(report.dt, report.limit);
   };
   EXPECT_EQ(choose(1e-3, 1.0, 10.0, 1e-3), std::pair(1e-3, StepLimit::case_dt));
@@ -76,6 +77,50 @@ TEST(TimeStep, IsTheSmallestOfItsLimits) {
   EXPECT_EQ(choose(1e-3, 0.0, 0.0, 0.0), std::pair(1e-3, StepLimit::case_dt));
   // The first step has a quarter of the Courant number.
   EXPECT_DOUBLE_EQ(choose(1.0, 4.0, 0.0, 0.0).first, 0.05 * spacing / 4.0);
+}
+
+TEST(TimeStep, EndsAtATargetWithoutTinySteps) {
+  TimeSettings time;
+  time.cfl = 0.2;
+  // Time step by time step from 0 to the target.
+  const auto run = [&](double dt, double target) {
+    time.dt = dt;
+    StepReport report;
+    std::vector<double> steps;
+    while (report.time < target) {
+      choose_time_step(time, 1.0, 1.0, target, report);
+      EXPECT_LE(report.dt, dt * (1.0 + 1e-6));
+      EXPECT_EQ(report.limit, report.dt < 0.999 * dt ? StepLimit::target : StepLimit::case_dt);
+      report.time = report.dt == target - report.time ? target : report.time + report.dt;
+      steps.push_back(report.dt);
+    }
+    EXPECT_EQ(report.time, target);
+    return steps;
+  };
+  for (const double target : {0.1, 0.0953, 0.09999999999, 0.1000000001, 0.3, 7.77}) {
+    const auto steps = run(1e-3, target);
+    EXPECT_EQ(steps.size(), std::ceil(target / 1e-3 - 1e-6)) << target;
+    EXPECT_GE(*std::ranges::min_element(steps), 0.9e-3 * (1.0 - 1e-9)) << target;
+  }
+  const auto even = run(3e-3, 0.01);
+  ASSERT_EQ(even.size(), 4u);
+  for (const double dt : even) EXPECT_NEAR(dt, 2.5e-3, 1e-15);
+  EXPECT_EQ(run(1.0, 1e-5), std::vector{1e-5});
+
+  // What a near target has shortened does not bound the growth.
+  StepReport report;
+  time.dt = 1.0;
+  report.free_dt = 1e-2;
+  choose_time_step(time, 1.0, 1.0, 1e-7, report);
+  EXPECT_EQ(report.dt, 1e-7);
+  choose_time_step(time, 1.0, 1.0, HUGE_VAL, report);
+  EXPECT_DOUBLE_EQ(report.dt, 1.1 * 1.1e-2);
+  // A step that is repeated is fitted, too.
+  report = {};
+  report.free_dt = time.dt = 1e-3;
+  report.halvings = 1;
+  choose_time_step(time, 1.0, 1.0, 0.9e-3, report);
+  EXPECT_EQ(std::pair(report.dt, report.limit), std::pair(0.45e-3, StepLimit::target));
 }
 
 template <class Dimension>

@@ -23,6 +23,7 @@ struct Case : MethodSettings, SceneSettings {
 
   struct {
     int steps = 0;          ///< a checkpoint every so many steps; 0: none by steps
+    double interval = 0.0;  ///< and every so much simulated time [s]; 0: none by simulated time
     double minutes = 15.0;  ///< and every so many minutes of wall-clock time; 0: none by time
   } checkpoint;
 

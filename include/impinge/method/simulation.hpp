@@ -1,6 +1,7 @@
 #pragma once
 // A run of the method, step by step.
 
+#include <limits>
 #include <vector>
 
 #include "impinge/boundaries/scene.hpp"
@@ -30,10 +31,11 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by one time step. A pressure solve that fails is repeated from zero with a new preconditioner, then the
+  /// Advances by one time step. The last steps before `target` [s] are shortened so that one ends exactly there. A
+  /// pressure solve that fails is repeated from zero with a new preconditioner, then the
   /// step with half its dt, at most four times. Throws SolveError; particles() then hold the state of the phase that
   /// failed.
-  void step();
+  void step(double target = std::numeric_limits<double>::infinity());
 
   /// All that the next step depends on.
   Checkpoint<Dim> checkpoint() const;
@@ -59,7 +61,7 @@ class Simulation {
   double imbalance() const { return state_.decomposition.imbalance(state_.particles); }
 
  private:
-  void try_step();
+  void try_step(double target);
   void pass_boundaries();
   void redistribute();
   void migrate();

@@ -9,14 +9,15 @@
 namespace impinge {
 
 /// What bounds the time step.
-enum class StepLimit { case_dt, cfl, growth, retry, force };
-inline constexpr std::array step_limit_names{"case", "CFL", "growth", "retry", "force"};
+enum class StepLimit { case_dt, cfl, growth, retry, force, target };
+inline constexpr std::array step_limit_names{"case", "CFL", "growth", "retry", "force", "target"};
 
 /// Totals over all ranks after a step.
 struct StepReport {
   std::int64_t step = 0;
   double time = 0.0;                     ///< [s]
   double dt = 0.0;                       ///< [s]
+  double free_dt = 0.0;                  ///< what it would be if no target were near [s]
   StepLimit limit = StepLimit::case_dt;  ///< what dt was bounded by
   std::int64_t particles = 0;            ///< of every type
   std::int64_t fluid = 0;                ///< stored

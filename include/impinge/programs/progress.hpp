@@ -17,7 +17,7 @@ class Progress {
   /// Prints a line if the last one is old enough, or if this is the last step.
   void update(const StepReport& report);
 
-  /// "step 1250  t 1.0000/5.0000 s (20 %)  dt 8.00e-04 s (case)  5123 particles  9 iterations  1 min 02 s left".
+  /// "step 1250  t 1/5 s (20 %)  dt 8.00e-04 s (case)  5123 particles  9 iterations  1 min 02 s left".
   static std::string line(const StepReport& report, double end, double seconds_left);
 
  private:
@@ -31,7 +31,7 @@ class Progress {
   double rate_ = 0.0;  // simulated over wall-clock time, smoothed
 };
 
-/// "4.2 s", "3 min 05 s", "2 h 07 min".
+/// "4.2 s", "3 min 05 s", "2 h 07 min", "11 d 03 h"; "unknown time" for what is no time.
 std::string duration_text(double seconds);
 
 }  // namespace impinge
