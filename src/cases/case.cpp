@@ -45,6 +45,7 @@ void derive(const Keys& keys, Case& c, const SceneInputs& inputs, const std::str
   if (!keys.given(c.name)) c.name = fs::path(file).stem();
   if (!keys.given(c.output.directory)) c.output.directory = fmt::format("output/{}", c.name);
   c.output.directory_place = keys.place(c.output.directory);
+  c.spacing_place = keys.place(c.particles.spacing);
   if (!keys.given(c.average_start)) c.average_start = 0.8 * c.time.end;
   derive_scene(keys, c, inputs);
   derive_method(keys, c, reference_speed(keys, c, inputs));

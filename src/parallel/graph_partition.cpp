@@ -4,6 +4,7 @@
 #include <petscmat.h>
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 
 #include "impinge/parallel/exchange.hpp"
@@ -26,6 +27,7 @@ std::vector<int> partition_with_metis(const CellGraph& graph, int parts) {
   std::vector<idx_t> part(static_cast<std::size_t>(n), 0);
   const int code = METIS_PartGraphKway(&n, &constraints, start.data(), neighbour.data(), vertex_weight.data(), nullptr,
                                        edge_weight.data(), &n_parts, nullptr, nullptr, options, &cut, part.data());
+  if (code == METIS_ERROR_MEMORY) throw std::bad_alloc();
   if (code != METIS_OK) throw std::runtime_error("METIS could not partition the background cells");
   return {part.begin(), part.end()};
 }

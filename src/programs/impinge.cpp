@@ -6,6 +6,7 @@
 #include <petscsys.h>
 
 #include <cstdio>
+#include <new>
 
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
@@ -55,6 +56,11 @@ int run_program(int argc, char** argv) {
     return failed_solve;
   } catch (const FileError& error) {
     if (first) fmt::print(stderr, "impinge: {}\n", error.what());
+    return broken;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "impinge: rank {}: out of memory; --check and --plan tell what the case needs\n", rank_of(comm));
+    std::fflush(nullptr);
+    MPI_Abort(comm, broken);
     return broken;
   } catch (const std::exception& error) {
     fmt::print(stderr, "impinge: rank {}: {}\n", rank_of(comm), error.what());

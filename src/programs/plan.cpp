@@ -20,7 +20,9 @@ template <int Dim>
 CellCounts count_particles(MPI_Comm comm, const CellGrid<Dim>& cells, const Scene<Dim>& scene) {
   const auto n_cells = static_cast<std::size_t>(cells.count());
   CellCounts counts{std::vector<int>(n_cells), std::vector<int>(n_cells), std::vector<int>(n_cells)};
-  constexpr int pieces = 64;  // one after the other, so that the particles are never all in memory
+  // One piece after the other, so that the particles are never all in memory.
+  constexpr std::int64_t of_a_piece = 100'000;
+  const int pieces = static_cast<int>(scene.next_id / of_a_piece / ranks_of(comm)) + 1;
   for (int piece = 0; piece < pieces; ++piece) {
     Particles<Dim> particles;
     scene.fill(rank_of(comm) * pieces + piece, ranks_of(comm) * pieces, particles);

@@ -13,11 +13,14 @@
 #include <sstream>
 
 #include "impinge/cases/make_simulation.hpp"
+#include "impinge/core/memory.hpp"
 #include "impinge/io/checkpoint_file.hpp"
 #include "impinge/io/output.hpp"
 #include "impinge/io/run_directory.hpp"
+#include "impinge/io/snapshot.hpp"
 #include "impinge/io/together.hpp"
 #include "impinge/parallel/exchange.hpp"
+#include "impinge/programs/memory_check.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
 #include "impinge/programs/schedule.hpp"
@@ -72,6 +75,7 @@ std::vector<FluidVolume> fluid_volumes(const Case& config) {
 
 template <int Dim>
 void check(MPI_Comm comm, const Case& config) {
+  check_memory<Dim>(comm, config);
   const auto simulation = make_simulation<Dim>(comm, config);
   refuse_unused_options(comm, simulation.pressure_solver().default_options());
   const StepReport& report = simulation.report();
@@ -83,6 +87,7 @@ void check(MPI_Comm comm, const Case& config) {
   const double bytes = sum_over_ranks(comm, static_cast<double>(simulation.bytes()));
   const double most = max_over_ranks(comm, static_cast<double>(simulation.bytes()));
   const double imbalance = simulation.imbalance();
+  const double free = free_memory(comm);
   const double acceleration = BodyForce<Dim>(config.fluid, 0.0).largest(comm, particles);
   if (rank_of(comm) > 0) return;
   const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
@@ -92,9 +97,10 @@ void check(MPI_Comm comm, const Case& config) {
              counts[2], counts[3]);
   fmt::print("ranks       {}, largest over mean work {:.3f}\n", ranks_of(comm), imbalance);
   fmt::print(
-      "memory      {:.1f} MB ({:.0f} bytes per particle), {:.1f} MB on the fullest rank; preconditioner and "
-      "libraries come on top\n",
-      bytes / 1e6, bytes / static_cast<double>(report.particles), most / 1e6);
+      "memory      {} ({:.0f} bytes per particle), {} on the fullest rank; preconditioner and libraries come on top; "
+      "{} "
+      "are free for a rank\n",
+      bytes_text(bytes), bytes / static_cast<double>(report.particles), bytes_text(most), bytes_text(free));
   for (const auto& [name, volume, error] : fluid_volumes<Dim>(config))
     fmt::print("fluid       {}: {:.6g} m^{}, the particles' {:+.2f} %\n", name, volume, Dim, 100.0 * error);
   fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
@@ -134,7 +140,7 @@ void print_plan(const Case& config, const Plan& plan) {
   const auto [field, most_field] = of(&RankPlan::field_bytes, 1e3);
   const auto [step, most_step] = of(&RankPlan::step_bytes, 1e3);
   const auto [iteration, most_iteration] = of(&RankPlan::iteration_bytes, 1e3);
-  const auto [memory, most_memory] = of(&RankPlan::memory, 1e6);
+  const auto [memory, most_memory] = of(&RankPlan::memory);
   const auto [nodes, most_nodes] = of(&RankPlan::nodes);
   const auto ranks = static_cast<double>(plan.ranks.size());
   fmt::print("case        {}, {} dimensions, planned for {} ranks; numbers are those of a rank\n", config.name,
@@ -148,8 +154,8 @@ void print_plan(const Case& config, const Plan& plan) {
   fmt::print("refresh     mean {:.1f}, most {:.1f} kB received for one double per halo particle\n", field, most_field);
   fmt::print("step        mean {:.1f}, most {:.1f} kB received, and up to {:.1f}, {:.1f} kB per solver iteration\n",
              step, most_step, iteration, most_iteration);
-  fmt::print("memory      mean {:.1f}, most {:.1f} MB; preconditioner and libraries come on top\n", memory,
-             most_memory);
+  fmt::print("memory      mean {}, most {}; preconditioner and libraries come on top\n", bytes_text(memory),
+             bytes_text(most_memory));
   fmt::print("nodes       mean {:.1f}, most {:.0f} cells with particles: rows of the coarse matrix\n", nodes,
              most_nodes);
   fmt::print("cells       {}, {} of them with particles (the partitioned graph)\n", plan.cells, plan.occupied);
@@ -297,6 +303,7 @@ void try_first_step(MPI_Comm comm, const Case& config) {
 template <int Dim>
 bool start_run(MPI_Comm comm, const Case& config) {
   const bool first = rank_of(comm) == 0;
+  check_memory<Dim>(comm, config);
   check_output(comm, config);
   // An earlier run stays where it is until this one is known to start.
   bool has_earlier_run = false;
@@ -315,6 +322,9 @@ bool start_run(MPI_Comm comm, const Case& config) {
 
 template <int Dim>
 std::shared_ptr<Simulation<Dim>> restored(MPI_Comm comm, const Case& config, const std::string& path) {
+  std::int64_t particles = 0;
+  on_first_rank(comm, [&] { particles = count_particles(path); });
+  check_memory<Dim>(comm, config, sum_over_ranks(comm, particles));
   const Checkpoint<Dim> checkpoint = read_checkpoint<Dim>(comm, path);
   return std::shared_ptr<Simulation<Dim>>(new Simulation<Dim>(make_simulation<Dim>(comm, config, &checkpoint)));
 }
@@ -398,6 +408,7 @@ void check_case(MPI_Comm comm, const Case& config) {
 void plan_case(MPI_Comm comm, const Case& config, int ranks) {
   refuse_unused_options(comm, {});
   with_dimension(config, [&](auto dimension) {
+    check_memory_of_plan<dimension()>(comm, config);
     const Plan plan = plan_run<dimension()>(comm, config, ranks);
     if (rank_of(comm) == 0) print_plan(config, plan);
   });

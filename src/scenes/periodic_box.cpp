@@ -17,6 +17,7 @@ Scene<Dim> make_periodic_box(const MethodSettings& method, const PeriodicBoxSett
     scene.bounds.high[k] = box.size[axis];
     lattice.extent[axis] = std::lround(box.size[axis] / lattice.spacing);
   }
+  scene.next_id = lattice.count();
   scene.fill = [=, speed = box.shear_speed, period = box.size[1]](int rank, int ranks, Particles<Dim>& particles) {
     for_share(lattice.count(), rank, ranks, [&](std::int64_t k) {
       const Vector<Dim> position = lattice.point(k);

@@ -13,7 +13,8 @@ namespace impinge {
 
 /// Every key of a case file.
 struct Case : MethodSettings, SceneSettings {
-  std::string name;  ///< default: the case file's stem
+  std::string name;           ///< default: the case file's stem
+  std::string spacing_place;  ///< where particles.spacing was given, for messages
 
   struct {
     std::string directory;        ///< default: output/<name>

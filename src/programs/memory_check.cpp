@@ -1,0 +1,122 @@
+#include "impinge/programs/memory_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "impinge/core/errors.hpp"
+#include "impinge/core/memory.hpp"
+#include "impinge/method/costs.hpp"
+#include "impinge/parallel/decomposition.hpp"
+#include "impinge/scenes/scenes.hpp"
+
+namespace impinge {
+namespace {
+
+constexpr double libraries = 40e6;            // measured without a case [bytes]
+constexpr double with_preconditioner = 1.5;   // over the arrays: measured 1.5 in 2D, 1.05 in 3D
+constexpr double plan_of_a_cell = 5.0 * 4.0;  // plan_run has five integers for each [bytes]
+
+/// Owned particles of a scene, and those with a row of the matrix.
+struct Counts {
+  double particles = 0.0, rows = 0.0;
+};
+
+/// Equal pieces of the scene, spread evenly over it, stand for the whole.
+template <int Dim>
+Counts count(const Scene<Dim>& scene) {
+  constexpr std::int64_t of_a_piece = 1024, most_pieces = 256;
+  const std::int64_t pieces = scene.next_id / of_a_piece + 1;
+  const std::int64_t tried = std::min(pieces, most_pieces);
+  Counts counts;
+  for (std::int64_t k = 0; k < tried; ++k) {
+    Particles<Dim> particles;
+    scene.fill(static_cast<int>((2 * k + 1) * pieces / (2 * tried)), static_cast<int>(pieces), particles);
+    counts.particles += static_cast<double>(particles.owned);
+    counts.rows += static_cast<double>(std::ranges::count_if(
+        particles.type, [](ParticleType type) { return type == ParticleType::fluid || type == ParticleType::wall; }));
+  }
+  const double scale = static_cast<double>(pieces) / static_cast<double>(tried);
+  return {scale * counts.particles, scale * counts.rows};
+}
+
+/// Background cells. Throws InputError where their parts are too many for the integers that count them.
+template <int Dim>
+double cells_of(const Scene<Dim>& scene, const Case& config) {
+  double cells = 1.0;
+  for (int k = 0; k < Dim; ++k)
+    cells *= std::max(1.0, std::floor((scene.bounds.high[k] - scene.bounds.low[k]) / least_cell_edge(config)));
+  constexpr int most = std::numeric_limits<int>::max();
+  if (const double parts = cells * std::pow(Decomposition<Dim>::cell_parts, Dim); parts > most)
+    throw InputError({fmt::format("{}: particles.spacing = {}: makes some {:.2g} background cells; allowed: at most {}",
+                                  config.spacing_place, number_text(config.particles.spacing), parts, most)});
+  return cells;
+}
+
+[[noreturn]] void refuse(const Case& config, double particles, double need, double free, double spacing,
+                         const char* instead) {
+  throw InputError(
+      {fmt::format("{}: particles.spacing = {}: not enough memory: some {:.3g} particles need {} on each rank, {} are "
+                   "free for it; allowed: from about {:.2g} (m) on{}",
+                   config.spacing_place, number_text(config.particles.spacing), particles, bytes_text(need),
+                   bytes_text(free), spacing, instead)});
+}
+
+}  // namespace
+
+template <int Dim>
+MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
+  const Scene<Dim> scene = make_scene<Dim>(config, config);
+  const UnitCosts costs = unit_costs<Dim>(config);
+  const Counts counts =
+      particles > 0 ? Counts{static_cast<double>(particles), static_cast<double>(particles)} : count(scene);
+  const double owned = counts.particles / ranks;
+  // Around a cube of the owned ones.
+  const double halo = std::pow(std::pow(owned, 1.0 / Dim) + 2.0 * config.kernel.laplacian_radius, Dim) - owned;
+  return {.particles = counts.particles,
+          .rank = (owned + halo) * costs.particle_memory + counts.rows / ranks * costs.row_memory +
+                  cells_of(scene, config) * costs.cell_memory + libraries};
+}
+
+double free_memory(MPI_Comm comm) {
+  MPI_Comm node = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  const double share = free_memory_of_node() / ranks_of(node);
+  MPI_Comm_free(&node);
+  return -max_over_ranks(comm, -std::min(share, free_memory_of_process()));
+}
+
+template <int Dim>
+void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles) {
+  const MemoryNeed need = memory_need<Dim>(config, ranks_of(comm), particles);
+  const double free = free_memory(comm);
+  const double spacing = config.particles.spacing;
+  if (need.rank > free)
+    refuse(config, need.particles, need.rank, free, spacing * std::pow(need.rank / free, 1.0 / Dim),
+           ", or more nodes (--plan)");
+  if (with_preconditioner * need.rank > free && rank_of(comm) == 0)
+    fmt::print(stderr, "impinge: warning: memory may run out: {} to {} are needed on each rank, {} are free for it\n",
+               bytes_text(need.rank), bytes_text(with_preconditioner * need.rank), bytes_text(free));
+}
+
+template <int Dim>
+void check_memory_of_plan(MPI_Comm comm, const Case& config) {
+  const Scene<Dim> scene = make_scene<Dim>(config, config);
+  const double need = cells_of(scene, config) * plan_of_a_cell;
+  const double free = free_memory(comm);
+  if (need > free)
+    refuse(config, count(scene).particles, need, free, config.particles.spacing * std::pow(need / free, 1.0 / Dim),
+           ", or fewer processes");
+}
+
+#define IMPINGE_INSTANTIATE(Dim)                                        \
+  template MemoryNeed memory_need<Dim>(const Case&, int, std::int64_t); \
+  template void check_memory<Dim>(MPI_Comm, const Case&, std::int64_t); \
+  template void check_memory_of_plan<Dim>(MPI_Comm, const Case&);
+IMPINGE_INSTANTIATE(2)
+IMPINGE_INSTANTIATE(3)
+#undef IMPINGE_INSTANTIATE
+
+}  // namespace impinge
