@@ -41,6 +41,16 @@ void declare(Keys& keys, Case& c) {
   declare_parallel(keys, c.parallel);
 }
 
+/// What is wrong with a text of which the names of files shall be made, within an XDMF file "name:dataset"; nothing if
+/// all is well.
+std::string file_name_problem(const std::string& name) {
+  if (std::string problem = text_problem(name); !problem.empty()) return problem;
+  if (const auto found = name.find_first_of("/:"); found != name.npos) return fmt::format("has a '{}'", name[found]);
+  if (name.starts_with(' ') || name.ends_with(' ')) return "has a space at an end";
+  if (name == "." || name == "..") return "is a directory";
+  return name.size() > 200 ? "longer than 200 bytes" : "";
+}
+
 void derive(const Keys& keys, Case& c, const SceneInputs& inputs, const std::string& file) {
   if (!keys.given(c.name)) c.name = fs::path(file).stem();
   if (!keys.given(c.output.directory)) c.output.directory = fmt::format("output/{}", c.name);
@@ -53,11 +63,14 @@ void derive(const Keys& keys, Case& c, const SceneInputs& inputs, const std::str
 
 void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
   if (keys.usable(c.name)) {
-    if (c.name.find('/') != c.name.npos)
-      keys.mistake(c.name, "has a '/', but file names are made of it; allowed: not empty");
-    if (c.name.size() > 200)
-      keys.mistake(c.name, "longer than 200 bytes, but file names are made of it; allowed: not empty");
+    if (const std::string problem = file_name_problem(c.name); !problem.empty())
+      keys.mistake(c.name, fmt::format("{}, but file names are made of it; allowed: 1 to 200 bytes of UTF-8 without /, "
+                                       ":, control characters and spaces at its ends",
+                                       problem));
   }
+  if (keys.usable(c.name, c.output.directory))
+    if (const std::string problem = path_problem(c.output.directory); !problem.empty())
+      keys.mistake(c.output.directory, problem);
   if (keys.given(c.average_start) && keys.usable(c.average_start, c.time.end) && c.average_start >= c.time.end) {
     keys.mistake(c.average_start,
                  fmt::format("the average starts after the end; allowed: [0, {}) (s)", number_text(c.time.end)));
@@ -108,6 +121,9 @@ Case parse_case(const std::vector<NamedText>& files, const std::vector<std::stri
 }
 
 Case parse_restart(const NamedText& stored, const std::vector<std::string>& settings, const std::string& directory) {
+  std::string problem = text_problem(directory);
+  if (problem.empty()) problem = path_problem(directory);
+  if (!problem.empty()) throw InputError({fmt::format("--restart {}: {}", in_quotes(directory), problem)});
   FixedValues before, after;
   try {
     parse({stored}, {}, before);

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -318,10 +319,7 @@ std::string Reader::put(Key& key, const toml::node& node) const {
         } else if constexpr (std::is_same_v<T, std::string*>) {
           if (!node.is_string()) return wrong_type;
           *target = node.as_string()->get();
-          if (target->empty()) return "empty";
-          if (target->find('\0') != target->npos) return "has a null character";
-          if (in_quotes(*target).size() > 4096) return "longer than 4096 bytes";
-          return "";
+          return text_problem(*target);
         } else if constexpr (std::is_same_v<T, Word>) {
           if (!node.is_string()) return wrong_type;
           const auto found = std::ranges::find(target.words, std::string_view(node.as_string()->get()));
@@ -386,6 +384,32 @@ std::optional<std::string> read_text(const fs::path& path, std::string& reason) 
 
 }  // namespace
 
+std::string text_problem(std::string_view text) {
+  constexpr std::string_view no_characters[] = {"\uFFFE", "\uFFFF"};
+  if (text.empty()) return "empty";
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  const auto is_in_text = [&](std::string_view part) { return text.find(part) != text.npos; };
+  if (std::ranges::any_of(text, is_control) || std::ranges::any_of(no_characters, is_in_text))
+    return "has a control character";
+  const std::string quoted = in_quotes(text);
+  if (quoted.size() > 4096) return "longer than 4096 bytes";
+  try {
+    if (toml::parse(fmt::format("text = {}", quoted))["text"].value<std::string>() == text) return "";
+  } catch (const toml::parse_error&) {
+  }
+  return "not UTF-8";
+}
+
+std::string path_problem(std::string_view path) {
+  const auto dollar = path.find('$');
+  const bool is_variable = dollar != path.npos && dollar + 1 < path.size() &&
+                           (path[dollar + 1] == '{' || path[dollar + 1] == '_' ||
+                            std::isalpha(static_cast<unsigned char>(path[dollar + 1])));
+  if (!path.starts_with('~') && !is_variable) return "";
+  return "a case is no shell, ~ and $ stay as they are; allowed: the path in full, or from the shell --set "
+         "output.directory=\"$HOME/...\"";
+}
+
 std::vector<NamedText> load_files(const std::string& path, Keys& keys) {
   std::vector<NamedText> files;
   const auto fail = [&](const Place& place, const std::string& text) {
@@ -416,6 +440,7 @@ std::vector<NamedText> load_files(const std::string& path, Keys& keys) {
       const std::string& name = include->as_string()->get();
       place = {.file = files.size(), .line = include->source().begin.line, .name = next.string()};
       key = fmt::format("include = {}: ", in_quotes(name));
+      if (const std::string problem = path_problem(name); !problem.empty()) fail(place, key + problem);
       next = next.parent_path() / name;
     } catch (const toml::parse_error&) {
       return files;  // read_files says what is wrong

@@ -56,7 +56,7 @@ std::string allowed_text(const Key& key) {
   if (const auto* word = std::get_if<Word>(&key.target)) return fmt::format("\"{}\"", fmt::join(word->words, "\", \""));
   if (key.is_list()) return fmt::format("[[{}]] with its keys", key.name);
   if (std::holds_alternative<bool*>(key.target)) return "true, false";
-  if (std::holds_alternative<std::string*>(key.target)) return "not empty";
+  if (std::holds_alternative<std::string*>(key.target)) return "UTF-8 without control characters, not empty";
   const std::string_view each = std::holds_alternative<Numbers*>(key.target)               ? "one per dimension, each "
                                 : std::holds_alternative<std::vector<double>*>(key.target) ? "each "
                                 : std::holds_alternative<std::vector<Numbers>*>(key.target)

@@ -331,6 +331,28 @@ class Run(System):
                 with h5py.File(self.directory / "out" / file) as snapshot:
                     self.assertIn(path, snapshot)
 
+    def test_names_that_cannot_be_read_back_are_refused_at_the_start(self):
+        def run(*words):
+            done = subprocess.run([BIN / "impinge", *words], cwd=self.directory, capture_output=True, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
+            return done.stderr
+
+        case = self.case("time.end = 2e-3")
+        latin = os.fsencode(self.directory) + b"/K\xfcvette.toml"
+        os.rename(case, latin)
+        self.assertIn(b"not UTF-8", run(latin))
+        self.assertIn(b"not UTF-8", run(latin, "--set", "name=x", "--set", b"output.directory=\xe9t\xe9"))
+        self.assertIn(b"no shell", run(latin, "--set", "name=x", "--set", "output.directory=~/out"))
+        self.assertEqual([os.fsencode(path.name) for path in self.directory.iterdir()], [b"K\xfcvette.toml"])
+        # With a name of its own, such a case file runs, and goes on.
+        for words in ([latin, "--set", "name=x", "--set", "output.directory=out"],
+                      ["--restart", "out", "--set", "time.end=4e-3", "--set", "output.average_start=0"]):
+            done = subprocess.run([BIN / "impinge", *words], cwd=self.directory, capture_output=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        os.rename(self.directory / "out", os.fsencode(self.directory) + b"/\xe9t\xe9")
+        self.assertIn(b"not UTF-8", run("--restart", b"\xe9t\xe9"))
+
     def test_divergence_is_exit_3_with_a_last_state_that_the_post_processing_opens(self):
         done = impinge(ROOT / "input/paper/jet60-A1.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=8e-4",
                        "--set", "time.max_speed=6", "--set", "output.directory=out", cwd=self.directory, ranks=2)

@@ -217,7 +217,7 @@ box = {length = 1}
              "case.toml:12: body[4].radius: required key is missing; allowed: > 0 (m)",
              "case.toml:14: body[4].velocity = [0, \"fast\"]: not an array of numbers; allowed: one per "
              "dimension, each any finite number (m/s)",
-             "case.toml:16: body[5].name = \"\": empty; allowed: not empty",
+             "case.toml:16: body[5].name = \"\": empty; allowed: UTF-8 without control characters, not empty",
              "case.toml:17: body[5].form = \"ellipse\": unknown word; allowed: \"circle\", \"arc\", \"outline\"",
              "case.toml:18: body[5].box.length = 1: unknown key; did you mean box.length?"}));
 }
@@ -343,7 +343,7 @@ TEST(CaseFile, DescribesTheKeysOfAListOnce) {
   EXPECT_TRUE(text.ends_with(R"(
 [[body]]
   any number of tables: what is in the box
-  name                          a string: not empty; default "unnamed"
+  name                          a string: UTF-8 without control characters, not empty; default "unnamed"
                                 what it is called
   form                          a word: "circle", "arc", "outline"; required
                                 what it looks like
@@ -358,7 +358,7 @@ TEST(CaseFile, DescribesTheKeysOfAListOnce) {
 
 [[box.gate]]
   any number of tables: what closes it
-  name                          a string: not empty; default "unnamed"
+  name                          a string: UTF-8 without control characters, not empty; default "unnamed"
                                 what it is called
   form                          a word: "circle", "arc", "outline"; required
                                 what it looks like

@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
+using namespace std::string_literals;
 
 const NamedText jet_base{"base.toml", R"(geometry = "jet"
 particles.spacing = 0.02
@@ -155,6 +156,56 @@ TEST(Case, IntervalsMakeAtMostAMillionFiles) {
   }
 }
 
+TEST(Case, NamesAreThoseThatFilesSeriesAndRestartsCanHave) {
+  for (const std::string& name : {"a"s, "kühl"s, "水"s, "A&B <1>"s, "a b"s, "-"s, "...x"s, std::string(200, 'n')})
+    EXPECT_EQ(parse("name = '" + name + "'").name, name);
+  const std::string rule =
+      ", but file names are made of it; allowed: 1 to 200 bytes of UTF-8 without /, :, control characters and spaces "
+      "at "
+      "its ends";
+  for (const auto& [name, problem] : std::vector<std::pair<std::string, std::string>>{{"a/b", "has a '/'"},
+                                                                                      {"a:b", "has a ':'"},
+                                                                                      {" a", "has a space at an end"},
+                                                                                      {"a ", "has a space at an end"},
+                                                                                      {".", "is a directory"},
+                                                                                      {"..", "is a directory"}})
+    EXPECT_EQ(mistakes_in("name = '" + name + "'"), Texts{"case.toml:1: name = \"" + name + "\": " + problem + rule});
+  EXPECT_EQ(mistakes_in("name = \"a\\nb\"").size(), 1u);
+  EXPECT_EQ(mistakes_in("name = \"a\\uFFFFb\"").size(), 1u);
+  // The default, from the case file's own name.
+  EXPECT_EQ(mistakes([] {
+              parse_case({{"caf\xE9.toml", jet_base.second}});
+            }),
+            Texts{"caf\xE9.toml: name = \"caf\xE9\": not UTF-8" + rule});
+  EXPECT_EQ(mistakes([] {
+              parse_case({{"a:b.toml", jet_base.second}});
+            }),
+            Texts{"a:b.toml: name = \"a:b\": has a ':'" + rule});
+  EXPECT_EQ(parse_case({{"caf\xE9.toml", jet_base.second + "name = 'x'"}}).name, "x");
+  // On the command line.
+  EXPECT_EQ(mistakes_in("", jet_base, {"name=caf\xE9"}).size(), 1u);
+}
+
+TEST(Case, PathsAreUtf8WithoutWordsOfAShell) {
+  const std::string shell =
+      ": a case is no shell, ~ and $ stay as they are; allowed: the path in full, or from the shell --set "
+      "output.directory=\"$HOME/...\"";
+  for (const std::string path : {"~/out", "~", "$SCRATCH/out", "/a/${USER}", "$_"}) {
+    EXPECT_EQ(mistakes_in("output.directory = '" + path + "'"),
+              Texts{"case.toml:1: output.directory = \"" + path + "\"" + shell});
+    EXPECT_EQ(mistakes_in("", jet_base, {"output.directory=" + path}),
+              Texts{"--set: output.directory = \"" + path + "\"" + shell});
+    EXPECT_EQ(mistakes([&] {
+                parse_restart({"x_00000007.checkpoint", parse("").resolved_text}, {}, path);
+              }),
+              Texts{"--restart \"" + path + "\"" + shell});
+  }
+  for (const std::string path : {"a~b/$", "5$/~", "/tmp/ü/a:b"})
+    EXPECT_EQ(parse("output.directory = '" + path + "'").output.directory, path);
+  EXPECT_EQ(mistakes_in("", jet_base, {"output.directory=/tmp/caf\xE9"}).size(), 1u);
+  EXPECT_EQ(mistakes_in("name = '$HOME'"), Texts{"case.toml: output.directory = \"output/$HOME\"" + shell});
+}
+
 TEST(Case, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
   EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_speed, 0.0);
   const Case both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");
@@ -244,7 +295,8 @@ TEST(Case, FindsWrongTypes) {
   EXPECT_EQ(mistakes_in("\ndimension = 2.0"), Texts{"case.toml:2: dimension = 2.0: not an integer; allowed: [2, 3]"});
   EXPECT_EQ(mistakes_in("pressure.clamp_negative = 1"),
             Texts{"case.toml:1: pressure.clamp_negative = 1: not a boolean; allowed: true, false"});
-  EXPECT_EQ(mistakes_in("name = 7"), Texts{"case.toml:1: name = 7: not a string; allowed: not empty"});
+  EXPECT_EQ(mistakes_in("name = 7"),
+            Texts{"case.toml:1: name = 7: not a string; allowed: UTF-8 without control characters, not empty"});
   EXPECT_EQ(mistakes_in("jet.start = true"),
             Texts{"case.toml:1: jet.start = true: not a word; allowed: \"impact\", \"steady\""});
   EXPECT_EQ(mistakes_in("jet.width = {value = 1}"),
@@ -286,7 +338,7 @@ TEST(Case, FindsUnknownWordsAndEmptyStrings) {
       mistakes_in("geometry = \"pipe\""),
       Texts{"case.toml:1: geometry = \"pipe\": unknown word; allowed: \"jet\", \"tank\", \"periodic_box\", \"scene\""});
   EXPECT_EQ(mistakes_in("output.directory = \"\""),
-            Texts{"case.toml:1: output.directory = \"\": empty; allowed: not empty"});
+            Texts{"case.toml:1: output.directory = \"\": empty; allowed: UTF-8 without control characters, not empty"});
   EXPECT_EQ(mistakes_in("name = \"a/b\"").size(), 1u);
 }
 
@@ -442,8 +494,9 @@ TEST(Case, RefusesValuesThatNoRunCouldUse) {
       {"größe = 1", "1: not TOML: "},
       {"\"größe\" = 1", "1: größe = 1: unknown key"},
       {"kernel.type = \"sïngular\"", "1: kernel.type = \"sïngular\": unknown word; allowed: \"non_singular\""},
-      {"name = \"a\\u0000b\"", "1: name = \"a\\u0000b\": has a null character; allowed: not empty"},
-      {"output.directory = \"a\\u0000b\"", "1: output.directory = \"a\\u0000b\": has a null character; allowed: "},
+      {"name = \"a\\u0000b\"",
+       "1: name = \"a\\u0000b\": has a control character; allowed: UTF-8 without control characters, not empty"},
+      {"output.directory = \"a\\u0000b\"", "1: output.directory = \"a\\u0000b\": has a control character; allowed: "},
       {"name = \"" + std::string(201, 'a') + "\"", "1: name = \"aaa"},
       {"output.directory = \"" + std::string(4096, 'a') + "\"", "1: output.directory = \"aaa"},
       {std::string(8000, 'a') + " = 1", "1: aaa"},
@@ -500,7 +553,7 @@ average_start = 9.0
                                   {"base.toml", "geometry = \"jet\"\njet.width = 0.4\ntime.end = 5\nfluid.densty = 1"},
                                   {"time.cfl=-1"});
   EXPECT_EQ(found, (Texts{"--set: time.cfl = -1: out of range; allowed: (0, 1]",
-                          "case.toml:1: name = \"\": empty; allowed: not empty",
+                          "case.toml:1: name = \"\": empty; allowed: UTF-8 without control characters, not empty",
                           "case.toml:3: particles.spacing = -0.02: out of range; allowed: > 0 (m)",
                           "case.toml:5: jet.widht = 0.4: unknown key; did you mean jet.width?",
                           "case.toml:6: jet.angle = \"steep\": not a number; allowed: [1, 90] (deg)",
@@ -657,7 +710,7 @@ void expect_round_trip(const Case& config) {
 TEST(Case, TheResolvedTextReadsBackToTheSameCase) {
   expect_round_trip(parse(""));
   expect_round_trip(parse("fluid.gravity = [-0.0, -9.80665]", tank_base));
-  expect_round_trip(parse("name = \"sh\\\"e\\\\ar \\n \\u00e9\"\nkernel.radius = 2.1000000000000001", box_base));
+  expect_round_trip(parse("name = \"sh\\\"e\\\\ar \\u00e9\"\nkernel.radius = 2.1000000000000001", box_base));
   const double odd = 0.1 + 0.2;
   const Case config = parse("", jet_base, {"fluid.density=0.30000000000000004"});
   EXPECT_EQ(config.fluid.density, odd);

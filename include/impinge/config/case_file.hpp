@@ -2,6 +2,7 @@
 // Case files (TOML): reading them into declared keys, and writing the keys as text.
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,14 @@ namespace impinge {
 
 /// A file's name and its text.
 using NamedText = std::pair<std::string, std::string>;
+
+/// What is wrong with a text that files shall hold and give back, XML among them: it is empty, too long, not UTF-8, or
+/// has control characters. Nothing if all is well.
+std::string text_problem(std::string_view text);
+
+/// What is wrong with a path in a case file: it has words of a shell, which nobody replaces there. Nothing if all is
+/// well.
+std::string path_problem(std::string_view path);
 
 /// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
 /// Reads the disk; not collective. Throws InputError (missing file, include cycle) that also lists what else is wrong
