@@ -1,6 +1,27 @@
 #include "impinge/core/mpi.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+
 namespace impinge {
+
+LaunchedProcess launched_process() {
+  struct Variables {
+    const char *processes, *rank;
+  };
+  // Of Open MPI; of the launchers of MPICH, Intel MPI and Slurm with PMI; of MVAPICH; of Slurm's srun.
+  constexpr Variables launchers[] = {{"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
+                                     {"PMI_SIZE", "PMI_RANK"},
+                                     {"MV2_COMM_WORLD_SIZE", "MV2_COMM_WORLD_RANK"},
+                                     {"SLURM_STEP_NUM_TASKS", "SLURM_PROCID"}};
+  const auto number = [](const char* variable) {
+    const char* text = std::getenv(variable);
+    return text ? std::atoi(text) : 0;
+  };
+  for (const auto& [processes, rank] : launchers)
+    if (const int count = number(processes); count > 1) return {std::max(0, number(rank)), count, processes};
+  return {};
+}
 
 int rank_of(MPI_Comm comm) {
   int rank = 0;

@@ -55,6 +55,11 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
     if (next != arguments.end() && may_be_value(*next)) line.petsc_arguments.push_back(*++word);
   }
 
+  for (const std::string& word : own)  // no word of ours has a '_'
+    if (word.starts_with("--") && word.substr(0, word.find('=')).find('_') != word.npos)
+      throw InputError(
+          {fmt::format("command line: {}: options of PETSc have a single dash: {}", word, word.substr(1))});
+
   bool describe = false;
   CLI::App app(description, "impinge");
   app.get_formatter()->column_width(32);

@@ -21,6 +21,32 @@ namespace {
 
 enum ExitCode { done = 0, broken = 1, wrong_input = 2, failed_solve = 3, stopped = 4 };
 
+/// Prints what --help, --version or --describe ask for; false for any other command line. MPI need not work.
+bool print_text(int argc, char** argv) {
+  try {
+    const std::string text = impinge::parse_command_line({argv + 1, argv + argc}).text;
+    if (impinge::launched_process().rank == 0) fmt::print("{}", text);
+    return !text.empty();
+  } catch (const impinge::InputError&) {
+    return false;  // run_program tells it, on one rank
+  }
+}
+
+/// Throws FileError where a launcher has started several processes, but each is alone: it is not of this MPI.
+void refuse_lone_processes(MPI_Comm comm) {
+  using namespace impinge;
+  const LaunchedProcess launched = launched_process();
+  if (ranks_of(comm) > 1 || launched.processes == 1) return;
+  char version[MPI_MAX_LIBRARY_VERSION_STRING];
+  int length = 0;
+  MPI_Get_library_version(version, &length);
+  const std::string_view text(version, static_cast<std::size_t>(length));
+  throw FileError(
+      fmt::format("process {} of {} ({}) is alone for its MPI ({}): each would run the whole case; start it "
+                  "with the mpirun or srun of that MPI",
+                  launched.rank, launched.processes, launched.variable, text.substr(0, text.find(','))));
+}
+
 /// What main does between MPI_Init and MPI_Finalize. Errors that all ranks share are told by rank 0; an error of one
 /// rank ends the job at once, for the others may be waiting for it.
 int run_program(int argc, char** argv) {
@@ -28,11 +54,8 @@ int run_program(int argc, char** argv) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first = rank_of(comm) == 0;
   try {
+    refuse_lone_processes(comm);
     const CommandLine line = parse_command_line({argv + 1, argv + argc});
-    if (!line.text.empty()) {
-      if (first) fmt::print("{}", line.text);
-      return done;
-    }
     const PetscSession session(argv[0], line.petsc_arguments);
     if (const auto& others = session.options_from_elsewhere(); first && !others.empty())
       fmt::print("PETSc options from PETSC_OPTIONS or .petscrc: {}\n", fmt::join(others, " "));
@@ -73,6 +96,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (print_text(argc, argv)) return done;
   impinge::prepare_file_access();
   MPI_Init(&argc, &argv);
   const int code = run_program(argc, argv);

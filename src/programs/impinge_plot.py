@@ -1,13 +1,15 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Draws a run of a jet case beside the analytic jet.
 
 impinge-plot DIR reads DIR/validation (what impinge-validate wrote) and the last snapshot in DIR, and writes
-pressure.png, wall_pressure.png, film_thickness.png and ranks.png into DIR/validation. Needs h5py and matplotlib.
+pressure.png, wall_pressure.png, film_thickness.png and ranks.png into DIR/validation. Needs h5py and matplotlib: of the
+first python3 on the PATH, else of the system's. Exit code 3: neither has them.
 """
 
 import argparse
 import csv
 import json
+import os
 import pathlib
 import sys
 
@@ -20,7 +22,11 @@ try:
     import matplotlib.pyplot as plt
     from matplotlib.collections import EllipseCollection
 except ImportError as error:
-    sys.exit(f"impinge-plot: {error}; {sys.executable} needs the packages h5py and matplotlib")
+    SYSTEM = "/usr/bin/python3"
+    if sys.executable != SYSTEM and os.path.exists(SYSTEM):
+        os.execv(SYSTEM, [SYSTEM, *sys.argv])
+    print(f"impinge-plot: {error}; {sys.executable} needs the packages h5py and matplotlib", file=sys.stderr)
+    sys.exit(3)
 
 FLUID, INLET, WALL, GHOST = range(4)
 COMPUTED, ANALYTIC = "#1f5fa8", "#c0392b"

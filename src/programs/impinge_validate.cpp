@@ -29,7 +29,8 @@ struct Arguments {
   bool no_figures = false;
 };
 
-/// Runs `impinge-plot DIR`, which stands beside this program. Throws FileError.
+/// Runs `impinge-plot DIR`, which stands beside this program. Where Python or its packages are missing, that is told
+/// and no error. Throws FileError.
 void draw(const std::string& directory) {
   std::string program = (fs::read_symlink("/proc/self/exe").parent_path() / "impinge-plot").string();
   std::string argument = directory;
@@ -38,8 +39,13 @@ void draw(const std::string& directory) {
   int status = 0;
   const int error = posix_spawn(&child, program.c_str(), nullptr, nullptr, words.data(), environ);
   if (error == 0 && waitpid(child, &status, 0) == child && status == 0) return;
-  throw FileError(
-      fmt::format("no figures: {} {}; the report is complete", program, error ? std::strerror(error) : "failed"));
+  const std::string problem =
+      fmt::format("no figures: {} {}; the report is complete", program, error ? std::strerror(error) : "failed");
+  constexpr int no_packages = 3, no_interpreter = 127;
+  const bool is_missing =
+      error == 0 && WIFEXITED(status) && (WEXITSTATUS(status) == no_packages || WEXITSTATUS(status) == no_interpreter);
+  if (!is_missing) throw FileError(problem);
+  fmt::print(stderr, "impinge-validate: {}\n", problem);
 }
 
 int run_program(const Arguments& arguments) {
@@ -68,7 +74,7 @@ int main(int argc, char** argv) {
       "Measures a run of a jet case against the analytic jet. Reads the snapshots in DIR; writes the report, profiles "
       "and figures into DIR/validation.",
       "impinge-validate");
-  app.footer("\nExit codes: 0 done, 1 a file could not be read or written or no figures, 2 wrong input");
+  app.footer("\nExit codes: 0 done, 1 a file could not be read or written, 2 wrong input");
   app.set_version_flag("--version", "impinge " IMPINGE_VERSION, "Print the version");
   app.add_option("directory", arguments.directory, "Output directory of the run")->required()->option_text("DIR");
   app.add_option("--from", arguments.selection.from,

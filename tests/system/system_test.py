@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -156,6 +157,38 @@ class CommandLine(System):
         self.assertIn("particles.spacing = 1e-05: makes some 4e+09 background cells; allowed: at most 2147483647", done.stderr)
         done = limited(tank, "--check")
         self.assertRegex(done.stdout, r"memory .* free for a rank\n")
+
+    def test_texts_need_no_working_mpi(self):
+        broken = {**os.environ, "OMPI_MCA_pml": "none"}
+        self.assertNotEqual(call(BIN / "impinge", QUICK, "--check", environment=broken).returncode, 0)
+        for word in ("--help", "--version", "--describe"):
+            done = call(BIN / "impinge", word, environment=broken)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(call(BIN / "impinge", word, ranks=3).stdout, done.stdout)
+        for word in ("--help", "--version"):
+            self.assertEqual(call(BIN / "impinge-validate", word, environment=broken).returncode, 0)
+
+    def test_processes_of_another_mpi_are_refused(self):
+        for variables, text in (
+            ({"PMI_SIZE": "4", "PMI_RANK": "2"}, "process 2 of 4 (PMI_SIZE) is alone for its MPI (Open MPI "),
+            ({"SLURM_STEP_NUM_TASKS": "8", "SLURM_PROCID": "0"}, "process 0 of 8 (SLURM_STEP_NUM_TASKS) is alone"),
+        ):
+            done = call(BIN / "impinge", QUICK, "--set", "output.directory=out", cwd=self.directory,
+                        environment={**os.environ, **variables})
+            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+            self.assertIn(text, done.stderr)
+        self.assertFalse((self.directory / "out").exists())
+        for variables in ({"PMI_SIZE": "1", "PMI_RANK": "0"}, {"SLURM_NTASKS": "8", "SLURM_PROCID": "0"},
+                          {"PMI_SIZE": "x"}):
+            done = call(BIN / "impinge", QUICK, "--check", environment={**os.environ, **variables})
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_petsc_options_with_two_dashes_are_told(self):
+        for words in (["--ppe_pc_type", "hypre"], ["--log_view"], ["--ppe_ksp_rtol=1e-3"]):
+            done = impinge(QUICK, *words)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.stderr, f"impinge: command line: {words[0]}: options of PETSc have a single dash: "
+                                          f"{words[0][1:]}\n")
 
     def test_petsc_options_of_other_programs_are_told(self):
         environment = {**os.environ, "PETSC_OPTIONS": "-snes_monitor"}
@@ -406,6 +439,34 @@ class Run(System):
         for name in ("pressure.png", "wall_pressure.png", "film_thickness.png", "ranks.png", "wall_pressure.csv",
                      "film_thickness.csv"):
             self.assertTrue((validation / name).stat().st_size > 0, name)
+
+    def test_a_report_without_figures_is_complete(self):
+        self.run_case("--set", "time.end=0.01")
+        for module in ("h5py", "matplotlib"):
+            packages = self.directory / module
+            packages.mkdir()
+            (packages / f"{module}.py").write_text(f"raise ImportError('no {module}')")
+            shutil.rmtree(self.directory / "out/validation", ignore_errors=True)
+            done = call(BIN / "impinge-validate", "out", cwd=self.directory,
+                        environment={**os.environ, "PYTHONPATH": str(packages)})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"impinge-plot: no {module}; ", done.stderr)
+            self.assertIn("failed; the report is complete\n", done.stderr)
+            self.assertTrue((self.directory / "out/validation/validation.json").exists())
+        # Another python3 on the PATH, without the packages, is no obstacle.
+        empty = self.directory / "empty/bin"
+        empty.mkdir(parents=True)
+        (empty / "python3").symlink_to("/usr/bin/python3")
+        (empty.parent / "pyvenv.cfg").write_text("home = /usr/bin\ninclude-system-site-packages = false\n")
+        done = call(BIN / "impinge-validate", "out", cwd=self.directory,
+                    environment={**os.environ, "PATH": f"{empty}:{os.environ['PATH']}"})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue((self.directory / "out/validation/pressure.png").exists())
+        # A figure that cannot be drawn is an error.
+        (self.directory / "out/validation/ranks.png").unlink()
+        (self.directory / "out/validation/ranks.png").mkdir()
+        done = call(BIN / "impinge-validate", "out", cwd=self.directory)
+        self.assertEqual(done.returncode, 1, done.stderr)
 
     def test_validation_names_a_snapshot_that_it_cannot_read(self):
         self.run_case("--set", "time.end=0.004")

@@ -12,6 +12,15 @@ namespace impinge {
 int rank_of(MPI_Comm comm);
 int ranks_of(MPI_Comm comm);
 
+/// What a launcher's variables say of this process: its number, and how many it has started; 0 of 1 where there is
+/// none. `variable`: the one that says how many. Needs no MPI.
+struct LaunchedProcess {
+  int rank = 0;
+  int processes = 1;
+  std::string variable;
+};
+LaunchedProcess launched_process();
+
 /// Sum, maximum over the ranks. Collective.
 double sum_over_ranks(MPI_Comm comm, double value);
 std::int64_t sum_over_ranks(MPI_Comm comm, std::int64_t value);
