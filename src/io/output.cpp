@@ -27,7 +27,8 @@ Output::Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restar
     : comm_(comm),
       files_(std::move(files)),
       history_(history_path(files_.directory, files_.name), history_header()),
-      series_(series_path(files_.directory, files_.name), files_.name) {
+      series_(series_path(files_.directory, files_.name), file_series_path(files_.directory, files_.name),
+              files_.name) {
   std::vector<std::string> mistakes;
   on_first_rank(comm, [&] {
     try {

@@ -81,6 +81,10 @@ std::string series_path(const std::string& directory, const std::string& name) {
   return path_of(directory, name + ".xmf");
 }
 
+std::string file_series_path(const std::string& directory, const std::string& name) {
+  return path_of(directory, name + snapshot_ending + ".series");
+}
+
 std::vector<std::string> list_snapshots(const std::string& directory, const std::string& name) {
   return list_files(directory, name, snapshot_ending);
 }
@@ -127,8 +131,8 @@ std::string set_run_aside(const std::string& directory, const std::string& name)
   for (int k = 2; !fs::create_directory(folder, error) && !error; ++k) folder = fmt::format("{}_{}", stem.string(), k);
   std::vector<std::string> files = list_snapshots(directory, name);
   for (std::string& path : list_checkpoints(directory, name)) files.push_back(std::move(path));
-  for (const std::string& path :
-       {history_path(directory, name), series_path(directory, name), (fs::path(directory) / "validation").string()})
+  for (const std::string& path : {history_path(directory, name), series_path(directory, name),
+                                  file_series_path(directory, name), (fs::path(directory) / "validation").string()})
     if (fs::exists(path)) files.push_back(path);
   for (const std::string& path : files)
     if (!error) fs::rename(path, folder / fs::path(path).filename(), error);

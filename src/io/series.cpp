@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
@@ -65,7 +66,8 @@ std::string attribute(const std::string& file, const char* name, std::int64_t ro
 
 }  // namespace
 
-Series::Series(std::string path, std::string name) : path_(std::move(path)), name_(std::move(name)) {}
+Series::Series(std::string xdmf_path, std::string file_series_path, std::string name)
+    : xdmf_path_(std::move(xdmf_path)), file_series_path_(std::move(file_series_path)), name_(std::move(name)) {}
 
 void Series::add(const std::string& file, double time, std::int64_t particles) {
   if (entries_.empty() || entries_.back().file != file) entries_.push_back({file, time, particles});
@@ -87,7 +89,7 @@ void Series::write() const {
     });
     grids += attribute<std::int32_t>(entry.file, rank_name, entry.particles) + "    </Grid>\n";
   }
-  write_text(path_, fmt::format(R"(<?xml version="1.0"?>
+  write_text(xdmf_path_, fmt::format(R"(<?xml version="1.0"?>
 <Xdmf Version="3.0">
   <Domain>
   <Grid GridType="Collection" CollectionType="Temporal">
@@ -95,7 +97,16 @@ void Series::write() const {
   </Domain>
 </Xdmf>
 )",
-                                grids));
+                                     grids));
+  write_file_series();
+}
+
+// ParaView's format 1.0 of a file series.
+void Series::write_file_series() const {
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const Entry& entry : entries_) files.push_back({{"name", entry.file}, {"time", entry.time}});
+  write_text(file_series_path_,
+             nlohmann::ordered_json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) + "\n");
 }
 
 }  // namespace impinge

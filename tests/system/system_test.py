@@ -203,7 +203,7 @@ class CommandLine(System):
         out = self.directory / "out"
         self.assertEqual(impinge(*words, cwd=self.directory).returncode, 0)
         first = {path.name: path.read_bytes() for path in out.iterdir()}
-        self.assertEqual(len(first), 5)  # two snapshots, checkpoint, series, history
+        self.assertEqual(len(first), 6)  # two snapshots, checkpoint, two series, history
         # One that cannot start touches nothing.
         for refused in (["-ppe_ksp_typ", "cg"], ["--set", "time.max_speed=1e-3"]):
             self.assertNotEqual(impinge(*words, *refused, cwd=self.directory).returncode, 0)
@@ -278,9 +278,45 @@ class Run(System):
                 shape = tuple(int(n) for n in item.get("Dimensions").split())
                 self.assertEqual(file[path].shape, shape)
 
+        listed = json.loads((self.directory / "out/jet60-quick.vtkhdf.series").read_text())
+        self.assertEqual(listed["file-series-version"], "1.0")
+        self.assertEqual([entry["time"] for entry in listed["files"]], times)
+        self.assertEqual([entry["name"] for entry in listed["files"]], [path.name for path in snapshots])
+        for entry in listed["files"]:
+            reader = vtkHDFReader()
+            reader.SetFileName(str(self.directory / "out" / entry["name"]))
+            reader.Update()
+            with h5py.File(self.directory / "out" / entry["name"]) as file:
+                self.assertEqual(entry["time"], file.attrs["time"])
+                self.assertEqual(reader.GetOutput().GetNumberOfPoints(), len(file["VTKHDF/Points"]))
+
         # A second run replaces the first.
         self.run_case("--set", "time.end=0.008")
         self.assertEqual(len(self.snapshots()), 2)
+
+    @unittest.skipUnless(shutil.which("pvpython"), "needs ParaView (Debian's excludes the VTK of the other tests)")
+    def test_paraview_opens_the_file_series(self):
+        self.run_case("--set", "time.end=0.03", "--set", "output.interval=0.007")
+        script = self.directory / "series.py"
+        script.write_text(
+            "import sys\n"
+            "from paraview.simple import VTKHDFReader\n"
+            "from paraview.servermanager import Fetch\n"
+            "reader = VTKHDFReader(FileName=sys.argv[1])\n"
+            "reader.UpdatePipelineInformation()\n"
+            "for time in reader.TimestepValues:\n"
+            "    reader.UpdatePipeline(time)\n"
+            "    pressure = Fetch(reader).GetPointData().GetArray('pressure')\n"
+            "    print(repr(time), pressure.GetNumberOfTuples(), repr(pressure.GetRange()[1]))\n"
+        )
+        done = call("pvpython", script, self.directory / "out/jet60-quick.vtkhdf.series")
+        expected = []
+        for path in self.snapshots():
+            with h5py.File(path) as file:
+                pressure = file["VTKHDF/PointData/pressure"][:]
+                expected.append(f"{float(file.attrs['time'])!r} {len(pressure)} {float(pressure.max())!r}")
+        self.assertEqual(len(expected), 6)
+        self.assertEqual(done.stdout.splitlines(), expected, done.stderr)
 
     def test_output_falls_on_its_times(self):
         done = self.run_case("--set", "time.end=0.06", "--set", "output.interval=0.014", "--set",

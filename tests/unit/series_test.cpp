@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "shared_directory.hpp"
@@ -23,7 +24,7 @@ class SeriesFile : public SharedDirectory {
 };
 
 TEST_F(SeriesFile, NamesTheDatasetsOfASnapshot) {
-  Series series(path("x.xmf"), "x");
+  Series series(path("x.xmf"), path("x.vtkhdf.series"), "x");
   series.add("x_00000001.vtkhdf", 0.5, 7);
   series.add("x_00000001.vtkhdf", 0.5, 7);
   const std::string text = text_of(series);
@@ -45,11 +46,26 @@ TEST_F(SeriesFile, NamesTheDatasetsOfASnapshot) {
 }
 
 TEST_F(SeriesFile, EscapesNames) {
-  Series series(path("x.xmf"), R"(<a> & "b")");
+  Series series(path("x.xmf"), path("x.vtkhdf.series"), R"(<a> & "b")");
   series.add(R"(<a> & "b"_00000001.vtkhdf)", 0.0, 1);
   const std::string text = text_of(series);
   EXPECT_NE(text.find(R"(<Grid Name="&lt;a&gt; &amp; &quot;b&quot;">)"), std::string::npos) << text;
   EXPECT_NE(text.find(R"(>&lt;a&gt; &amp; &quot;b&quot;_00000001.vtkhdf:/VTKHDF/Points<)"), std::string::npos) << text;
+}
+
+TEST_F(SeriesFile, ListsFilesWithTheirTimes) {
+  const std::string name = R"(<ä> & "b"\)";
+  Series series(path("x.xmf"), path("x.vtkhdf.series"), name);
+  series.write();
+  const auto list = [&] { return nlohmann::json::parse(std::ifstream(path("x.vtkhdf.series"))); };
+  EXPECT_EQ(list()["files"], nlohmann::json::array());
+  series.add(name + "_00000000.vtkhdf", 0.0, 1);
+  series.add(name + "_00000009.vtkhdf", 0.1 + 0.2, 1);
+  series.write();
+  EXPECT_EQ(list()["file-series-version"], "1.0");
+  ASSERT_EQ(list()["files"].size(), 2u);
+  EXPECT_EQ(list()["files"][1]["name"], name + "_00000009.vtkhdf");
+  EXPECT_EQ(list()["files"][1]["time"], 0.1 + 0.2);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace impinge {
 /// Writes into the case's output directory:
 ///   <name>_<step>.vtkhdf   snapshots
 ///   <name>.xmf             XDMF, the snapshots as a time series
+///   <name>.vtkhdf.series   ParaView's file series, the same
 ///   <name>_history.csv     one row per step
 ///   <name>_<step>.checkpoint  the last two checkpoints
 ///   <name>.lock            who writes them, while the run lasts

@@ -28,6 +28,9 @@ std::string history_path(const std::string& directory, const std::string& name);
 /// `<directory>/<name>.xmf`.
 std::string series_path(const std::string& directory, const std::string& name);
 
+/// `<directory>/<name>.vtkhdf.series`.
+std::string file_series_path(const std::string& directory, const std::string& name);
+
 /// Snapshots in a directory, ordered by step: those of the case `name`, or all if it is empty. Throws FileError where
 /// the directory cannot be read.
 std::vector<std::string> list_snapshots(const std::string& directory, const std::string& name = "");
