@@ -469,6 +469,47 @@ TEST_F(RunDirectory, AProlongedAndMovedRunIsOneRun) {
   EXPECT_EQ(validate(directory).times.size(), 1u);
 }
 
+TEST_F(RunDirectory, WhatTheAnalyticJetHasNotIsTold) {
+  const auto report_of = [&](const Case& of) {
+    fs::remove_all(directory);
+    fs::create_directories(directory);
+    save(of, step, 2.0, particles);
+    const Validation validation = validate(directory);
+    write_report(validation, directory + "/validation");
+    std::ifstream file(directory + "/validation/validation.json");
+    return std::pair{nlohmann::json::parse(file)["differences"], to_table(validation)};
+  };
+  const auto [none, plain] = report_of(config);
+  EXPECT_EQ(none, nlohmann::json::array());
+  EXPECT_EQ(plain.find("differs"), std::string::npos);
+
+  const double width = config.jet.width, speed = config.jet.speed;
+  const auto [all, table] = report_of(
+      jet_case(60.0, 0.02, "fluid.gravity = [3.0, -4.0]\nfluid.viscosity = 1e-3\nfluid.central_force = 0.5\n"));
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0], fmt::format("gravity, g H/U^2 = {:.3g}", 5.0 * width / (speed * speed)));
+  EXPECT_EQ(all[1], fmt::format("viscosity, U H/nu = {:.3g}", speed * width / 1e-3));
+  EXPECT_EQ(all[2], fmt::format("a central force, B H/U = {:.3g}", 0.5 * width / speed));
+  for (const auto& difference : all)
+    EXPECT_NE(table.find("differs    " + difference.get<std::string>() + ": the analytic jet has none"),
+              std::string::npos)
+        << table;
+
+  // A table takes the place of the constant.
+  const auto [in_time, unused] = report_of(jet_case(60.0, 0.02,
+                                                    "[[fluid.gravity_at]]\ntime = 0.0\nvalue = [0.0, 0.0]\n"
+                                                    "[[fluid.gravity_at]]\ntime = 1.0\nvalue = [0.0, 2.0]\n"));
+  ASSERT_EQ(in_time.size(), 1u);
+  EXPECT_EQ(in_time[0], fmt::format("gravity, g H/U^2 = {:.3g}", 2.0 * width / (speed * speed)));
+}
+
+TEST_F(RunDirectory, ReportsAreUtf8WhateverASnapshotSays) {
+  save(config, step, 2.0, particles, "caf\xe9");
+  write_report(validate(directory), directory + "/validation");
+  std::ifstream file(directory + "/validation/validation.json");
+  EXPECT_EQ(nlohmann::json::parse(file)["status"], "caf\xef\xbf\xbd");
+}
+
 TEST_F(RunDirectory, WrongInputIsToldApart) {
   EXPECT_NE(error_of<InputError>().find("no snapshot"), std::string::npos);
 

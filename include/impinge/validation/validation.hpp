@@ -27,6 +27,7 @@ struct Validation {
   Case config;          ///< the case as the last snapshot has it
   SnapshotHeader last;  ///< of the last snapshot
   std::string last_path;
+  std::vector<std::string> differences;  ///< what acts on the run and not on the analytic jet, with its strength
   std::optional<TimeSpan> window;  ///< of the wall-pressure average
   std::vector<double> times;       ///< of the compared snapshots [s]
   JetMetrics metrics;
