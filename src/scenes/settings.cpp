@@ -57,10 +57,15 @@ void check_multiples(Keys& keys, const SceneInputs& in, const T& setting, std::s
   for (const double length : lengths) {
     const double count = length / in.spacing;
     if (std::abs(count - std::round(count)) <= 1e-6 && count > 0.5) continue;
+    const double above = std::max(1.0, std::ceil(count)) * in.spacing;
+    const double below = std::floor(count) * in.spacing;
+    // Digits enough for the named lengths to be multiples, too.
+    const std::string nearest = below > 0.0 ? fmt::format("nearest are {:.12g} and {:.12g}", below, above)
+                                            : fmt::format("least is {:.12g}", above);
     keys.mistake(setting,
                  fmt::format("{} m is {:.9g} particle spacings; allowed: integer multiples of particles.spacing = {} "
-                             "(m)",
-                             number_text(length), count, number_text(in.spacing)));
+                             "(m), the {}",
+                             number_text(length), count, number_text(in.spacing), nearest));
   }
 }
 

@@ -573,7 +573,7 @@ TEST(Case, WhatHasTheMistakesInOneText) {
 TEST(Case, TheJetIsWholeParticlesWide) {
   EXPECT_EQ(mistakes_in("particles.spacing = 0.03"),
             Texts{"base.toml:4: jet.width = 0.4: 0.4 m is 13.3333333 particle spacings; allowed: integer multiples of "
-                  "particles.spacing = 0.03 (m)"});
+                  "particles.spacing = 0.03 (m), the nearest are 0.39 and 0.42"});
   EXPECT_EQ(mistakes_in("particles.spacing = 0.1"),
             Texts{"base.toml:4: jet.width = 0.4: narrower than 5 particles; allowed: >= 0.5 (m)"});
   EXPECT_TRUE(mistakes_in("particles.spacing = 0.08").empty());
@@ -625,14 +625,26 @@ TEST(Case, TanksAndBoxesAreWholeParticlesLarge) {
   EXPECT_EQ(
       mistakes_in("tank.size = [0.205, 0.3]", tank_base),
       Texts{"case.toml:1: tank.size = [0.205, 0.3]: 0.205 m is 20.5 particle spacings; allowed: integer multiples "
-            "of particles.spacing = 0.01 (m)"});
+            "of particles.spacing = 0.01 (m), the nearest are 0.2 and 0.21"});
   EXPECT_EQ(
       mistakes_in("tank.fluid_height = 0.123", tank_base),
       Texts{"case.toml:1: tank.fluid_height = 0.123: 0.123 m is 12.3 particle spacings; allowed: integer multiples "
-            "of particles.spacing = 0.01 (m)"});
+            "of particles.spacing = 0.01 (m), the nearest are 0.12 and 0.13"});
   EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.101]", box_base),
             Texts{"case.toml:1: periodic_box.size = [0.1, 0.101]: 0.101 m is 40.4 particle spacings; allowed: integer "
-                  "multiples of particles.spacing = 0.0025 (m)"});
+                  "multiples of particles.spacing = 0.0025 (m), the nearest are 0.1 and 0.1025"});
+  // Each length by itself; the sizes that are named are allowed.
+  const std::string odd = "particles.spacing = 0.0071\ntank.fluid_height = 0.0994\ntank.size = ";
+  const Texts found = mistakes_in(odd + "[0.7, 0.401]", tank_base);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_TRUE(found[0].ends_with("the nearest are 0.6958 and 0.7029")) << found[0];
+  EXPECT_TRUE(found[1].ends_with("the nearest are 0.3976 and 0.4047")) << found[1];
+  EXPECT_EQ(mistakes_in(odd + "[0.7029, 0.3976]", tank_base), Texts{});
+  EXPECT_TRUE(mistakes_in("tank.fluid_height = 1e-3", tank_base).at(0).ends_with("(m), the least is 0.01"));
+  const std::string fine = "particles.spacing = 0.00012345678912\ntank.fluid_height = 0.012345678912\ntank.size = ";
+  const std::string text = mistakes_in(fine + "[3.0, 0.12345678912]", tank_base).at(0);
+  EXPECT_TRUE(text.ends_with("the nearest are 2.99999997562 and 3.00012343241")) << text;
+  EXPECT_EQ(mistakes_in(fine + "[3.00012343241, 0.12345678912]", tank_base), Texts{});
 }
 
 TEST(Case, TheFluidStaysBelowTheWalls) {
