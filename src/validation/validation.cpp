@@ -57,7 +57,7 @@ struct Stock {
 
 /// The last line of a history; nothing without a file or without a line. Throws FileError.
 std::optional<Stock> last_stock(const std::string& path) {
-  if (!fs::exists(path)) return std::nullopt;
+  if (!fs::is_regular_file(path)) return std::nullopt;
   std::ifstream file(path);
   std::string line, last;
   std::getline(file, line);
@@ -274,8 +274,8 @@ std::string to_table(const Validation& validation) {
   std::string table = fmt::format("case       {}: {} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
                                   config.jet.angle, config.jet.width / config.particles.spacing, scheme_text(config),
                                   config.kernel.type == KernelType::singular ? "singular" : "non-singular");
-  table += fmt::format("run        {} at t = {:.6g} s, step {}\n", last.status, last.time, last.step);
-  if (!last.message.empty()) table += fmt::format("           {}\n", last.message);
+  table += fmt::format("run        {} at t = {:.6g} s, step {}\n", printable(last.status), last.time, last.step);
+  if (!last.message.empty()) table += fmt::format("           {}\n", printable(last.message));
   for (const std::string& difference : validation.differences)
     table += fmt::format("differs    {}: the analytic jet has none; the errors below include its effect\n", difference);
   table += validation.window ? fmt::format("averaged   wall pressure from {:.6g} s to {:.6g} s\n",

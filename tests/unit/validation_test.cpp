@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mpi.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -384,6 +385,10 @@ TEST_F(RunDirectory, BalanceIsTheHistorysAgainstTheLastSnapshot) {
   EXPECT_EQ(validate(directory).particle_balance.value(), 1);
   std::ofstream(directory + "/" + config.name + "_history.csv") << "step,in,out,lost\n1,2,3,0\n";
   EXPECT_NE(error_of<FileError>().find("'fluid'"), std::string::npos);
+  const std::string history = directory + "/" + config.name + "_history.csv";
+  fs::remove(history);
+  ASSERT_EQ(mkfifo(history.c_str(), 0600), 0);  // nobody writes into it
+  EXPECT_FALSE(validate(directory).particle_balance);
 }
 
 TEST_F(RunDirectory, FailedRunIsReportedWithoutNumbersThatAreNotFinite) {
@@ -508,6 +513,8 @@ TEST_F(RunDirectory, ReportsAreUtf8WhateverASnapshotSays) {
   write_report(validate(directory), directory + "/validation");
   std::ifstream file(directory + "/validation/validation.json");
   EXPECT_EQ(nlohmann::json::parse(file)["status"], "caf\xef\xbf\xbd");
+  save(config, step, 2.0, particles, "\x1b[2Jfinished");
+  EXPECT_NE(to_table(validate(directory)).find("run        \\u001b[2Jfinished at"), std::string::npos);
 }
 
 TEST_F(RunDirectory, WrongInputIsToldApart) {
