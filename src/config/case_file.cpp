@@ -430,7 +430,13 @@ std::vector<NamedText> load_files(const std::string& path, Keys& keys) {
     const fs::path canonical = fs::weakly_canonical(next, error);
     if (!seen.insert(error ? next : canonical).second) fail(place, key + "the files include each other in a circle");
     std::string reason;
-    const std::optional<std::string> text = read_text(next, reason);
+    std::optional<std::string> text;
+    if (!key.empty() && fs::exists(next, error) && !fs::is_regular_file(next, error) &&
+        !fs::is_directory(next, error)) {
+      reason = "is no regular file";  // a pipe or a terminal may have no end
+    } else {
+      text = read_text(next, reason);
+    }
     if (!text) fail(place, fmt::format("{}cannot read {}: {}", key, next.string(), reason));
     files.emplace_back(next.string(), *text);
     try {

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "impinge/core/errors.hpp"
@@ -12,6 +13,8 @@
 
 namespace impinge {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The next line of a file; false at its end and for a line that was broken off.
 bool next_line(std::ifstream& file, std::string& line) { return std::getline(file, line) && !file.eof(); }
@@ -33,6 +36,9 @@ void TableFile::create() {
 }
 
 std::int64_t TableFile::resume(std::int64_t step) {
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_regular_file(path_, error))  // a pipe may have no end
+    throw FileError(fmt::format("cannot continue {}: it is no regular file", path_));
   std::string text = header_ + '\n';
   std::int64_t rows = 0;
   std::int64_t last = -1;

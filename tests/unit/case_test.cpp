@@ -3,6 +3,7 @@
 #include "impinge/cases/case.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -785,7 +786,12 @@ TEST_F(CaseFiles, FilesThatCannotBeReadAreMistakes) {
             line + "\"./case.toml/\": cannot read " + path("./case.toml/") + ": Not a directory");
   const std::string endless(5000, 'x');
   EXPECT_EQ(include(endless), line + '"' + endless + "\": cannot read " + path(endless) + ": File name too long");
-  EXPECT_EQ(include("/dev/zero"), line + "\"/dev/zero\": cannot read /dev/zero: larger than 1048576 bytes");
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const std::string& name : {std::string("/dev/zero"), path("pipe")}) {
+    EXPECT_EQ(include(name), line + '"' + name + "\": cannot read " + name + ": is no regular file");
+  }
+  EXPECT_EQ(mistakes([] { load_case_files("/dev/zero"); }).at(0),
+            "/dev/zero: cannot read /dev/zero: larger than 1048576 bytes");
   EXPECT_EQ(include("/proc/self/mem"), line + "\"/proc/self/mem\": cannot read /proc/self/mem: Input/output error");
   fs::create_symlink("loop", path("loop"));
   EXPECT_EQ(include("loop"), line + "\"loop\": cannot read " + path("loop") + ": Too many levels of symbolic links");

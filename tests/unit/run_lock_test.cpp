@@ -3,6 +3,7 @@
 #include "impinge/io/run_lock.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -71,6 +72,16 @@ TEST_F(RunLocks, OfAnotherHostGiveWayWhereTheyAreOld) {
   EXPECT_NE(refusal().find("process 1 on elsewhere, job 4711 is writing this run"), std::string::npos) << refusal();
   fs::last_write_time(file_, fs::file_time_type::clock::now() - std::chrono::minutes(3));
   EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, OfNoProcessAreNoTrouble) {
+  std::ofstream(file_) << std::string(100'000, 'x');
+  const std::string refused = refusal();
+  EXPECT_NE(refused.find("process 0 on xxx"), std::string::npos) << refused.substr(0, 200);
+  EXPECT_LT(refused.size(), 5000u);
+  fs::remove(file_);
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  EXPECT_NE(refusal().find("is writing this run"), std::string::npos);
 }
 
 TEST_F(RunLocks, ThatCannotBeWrittenAreToldOf) { EXPECT_THROW(RunLock(directory_ + "/nowhere", "case"), FileError); }

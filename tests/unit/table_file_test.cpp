@@ -3,6 +3,7 @@
 #include "impinge/io/table_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <sstream>
@@ -68,6 +69,11 @@ TEST_F(Table, OtherColumnsAreNotContinued) {
   EXPECT_EQ(failure_of([&] { table().resume(1); }),
             "cannot continue " + path("table.csv") + ": its columns are step,force, not step,pressure");
   EXPECT_EQ(text(), other);
+}
+
+TEST_F(Table, APipeIsNotContinued) {
+  ASSERT_EQ(mkfifo(path("table.csv").c_str(), 0600), 0);
+  EXPECT_EQ(failure_of([&] { table().resume(1); }), "cannot continue " + path("table.csv") + ": it is no regular file");
 }
 
 TEST_F(Table, TellsThatItCannotBeWritten) {
