@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of case files and of snapshots, one after the other, with libFuzzer and sanitizers.
+# Fuzzes the readers of case files, snapshots and checkpoints, one after the other, with libFuzzer and sanitizers.
 # Usage: tests/fuzz.sh [SECONDS [READER...]]
 #   SECONDS  for each reader, default 600
-#   READER   case, snapshot; default both
+#   READER   case, snapshot, checkpoint; default all
 # Output: output/fuzz/<reader>.log, the inputs found in output/fuzz/<reader>/; an input that breaks a reader is
 # output/fuzz/<reader>-crash-... (leak, timeout, oom). To keep it, put it into tests/fuzz/corpus/<reader>/.
 set -euo pipefail
@@ -12,8 +12,8 @@ export IMPINGE_PRESET=fuzz
 
 seconds=${1:-600}
 readers=("${@:2}")
-[ ${#readers[@]} -gt 0 ] || readers=(case snapshot)
-if ! [[ "$seconds ${readers[*]}" =~ ^[1-9][0-9]*(\ (case|snapshot))+$ ]]; then
+[ ${#readers[@]} -gt 0 ] || readers=(case snapshot checkpoint)
+if ! [[ "$seconds ${readers[*]}" =~ ^[1-9][0-9]*(\ (case|snapshot|checkpoint))+$ ]]; then
   sed -n '2,7s/^# //p' "$0" >&2
   exit 2
 fi

@@ -15,6 +15,15 @@ constexpr const char* checkpoint_group = "/checkpoint";
 
 std::string path_in_group(const char* name) { return fmt::format("{}/{}", checkpoint_group, name); }
 
+/// True where the ranks' parts of a dataset make its rows.
+bool are_parts_of(std::int64_t rows, const std::vector<std::int64_t>& parts) {
+  for (const std::int64_t part : parts) {
+    if (part < 0 || part > rows) return false;
+    rows -= part;
+  }
+  return rows == 0;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -53,8 +62,7 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
     state.numbers = file->numbers(checkpoint_group);
     pieces = file->checked_whole<std::int64_t>("/VTKHDF/NumberOfPoints");
     all = file->rows(points_path);
-    if (std::accumulate(pieces.begin(), pieces.end(), std::int64_t{0}) != all)
-      file->fail("the ranks' numbers of particles do not make the whole");
+    if (!are_parts_of(all, pieces)) file->fail("the ranks' numbers of particles do not make the whole");
   });
 
   const int rank = rank_of(comm);
@@ -72,7 +80,17 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
   together(comm, [&] { state.particles = file->particles<Dim>(count, share); });
   state.searched_position =
       to_values<Vector<Dim>>(share.template operator()<double>(path_in_group("searched_position"), 3));
-  if (!own_parts) return state;
+  std::int64_t first_node = 0, nodes = 0;
+  const auto check = [&] {
+    together(comm, [&] {
+      if (const std::string problem = problem_of(state, rank, ranks_of(comm), first_node, nodes); !problem.empty())
+        file->fail(problem);
+    });
+  };
+  if (!own_parts) {
+    check();
+    return state;
+  }
 
   std::vector<std::int64_t> rows, entries;
   together(comm, [&] {
@@ -81,6 +99,10 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
     entries = file->checked_whole<std::int64_t>(path_in_group("coarse_entries"));
     if (rows.size() != pieces.size() || entries.size() != pieces.size())
       file->fail("its parts are of different numbers of ranks");
+    nodes = file->rows(path_in_group("coarse_cell"));
+    if (!are_parts_of(nodes, rows) || !are_parts_of(file->rows(path_in_group("coarse_column")), entries))
+      file->fail("the ranks' rows of the coarse matrix do not make the whole");
+    first_node = before(rows);
   });
   const auto part = [&]<class T>(const char* dataset, const std::vector<std::int64_t>& sizes, std::vector<T>& values) {
     values =
@@ -90,6 +112,7 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
   part("coarse_length", rows, state.coarse.length);
   part("coarse_column", entries, state.coarse.column);
   part("coarse_value", entries, state.coarse.value);
+  check();
   return state;
 }
 

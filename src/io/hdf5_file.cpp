@@ -231,7 +231,7 @@ std::vector<T> Hdf5Reader::dataset(const std::string& name, std::int64_t first, 
   const auto width = static_cast<hsize_t>(std::max(columns, 1));
   const Dataset set(need(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), name));
   const auto whole = extent(set, name);
-  if (first + count > whole[0] || whole[1] != columns)
+  if (first < 0 || count < 0 || count > whole[0] || first > whole[0] - count || whole[1] != columns)
     fail(fmt::format("dataset {} has {} x {} entries", name, whole[0], whole[1]));
   const Datatype type(need(H5Dget_type(set)));
   if (H5Tequal(type, native_type<T>()) <= 0) fail(fmt::format("dataset {} has another type", name));

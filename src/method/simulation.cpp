@@ -180,6 +180,8 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
   } else if (decomposition.owners().empty()) {
     decomposition.partition(particles);
   }
+  if (!std::ranges::all_of(scene_.inlets, &Inlet<Dim>::is_in_place))
+    throw FileError("the checkpoint's inlet is elsewhere");
   // The positions at the end of the step go the particles' way in the place of velocities.
   Particles<Dim> later = particles;
   later.velocity = state.particles.position;

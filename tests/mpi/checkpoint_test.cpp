@@ -2,15 +2,19 @@
 
 #include "impinge/method/checkpoint.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "gather.hpp"
 #include "impinge/cases/make_simulation.hpp"
 #include "impinge/io/checkpoint_file.hpp"
+#include "impinge/io/hdf5_file.hpp"
 #include "impinge/io/run_directory.hpp"
 #include "region_cases.hpp"
 #include "shared_directory.hpp"
@@ -185,6 +189,124 @@ TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
   const Case other = jet_case({"kernel.laplacian_radius=6.0"});
   EXPECT_NE(failure_of([&] { make_simulation<2>(MPI_COMM_WORLD, other, &from); }).find("background cells"),
             std::string::npos);
+}
+
+// Checksums match: someone has made these files.
+TEST_F(Restart, RefusesWhatNoRunHasSaved) {
+  const Case config = jet_case({});
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  const int rank = rank_of(MPI_COMM_WORLD), ranks = ranks_of(MPI_COMM_WORLD);
+  const Checkpoint<2> sound = simulation.checkpoint();
+  const auto nodes = sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(sound.coarse.cell.size()));
+  ASSERT_GT(nodes, 0);
+  const auto failure_after = [&](const auto& change) {
+    Checkpoint<2> state = sound;
+    change(state);
+    write_checkpoint(MPI_COMM_WORLD, path("x.checkpoint"), state,
+                     {.dimension = 2, .status = "running", .message = "", .case_text = "", .code_version = {}});
+    return failure_of([&] {
+      const auto from = read_checkpoint<2>(MPI_COMM_WORLD, path("x.checkpoint"));
+      make_simulation<2>(MPI_COMM_WORLD, config, &from);
+    });
+  };
+  EXPECT_EQ(failure_after([](auto&) {}), "");
+
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const auto& [name, value] :
+       std::initializer_list<std::pair<const char*, double>>{{"limit", 6.0},
+                                                             {"limit", -1.0},
+                                                             {"step", 0.5},
+                                                             {"step", -1.0},
+                                                             {"next_id", 1e300},
+                                                             {"lost", 1e19},
+                                                             {"iterations", 3e9},
+                                                             {"coarse_age", -1.0},
+                                                             {"coarse_fresh_iterations", 1e10}}) {
+    const std::string failure = failure_after([&](auto& state) { state.numbers.at(name) = value; });
+    EXPECT_TRUE(failure.ends_with(fmt::format(": {} = {} is out of range", name, value))) << failure;
+  }
+  for (const char* name : {"time", "dt", "free_dt", "max_speed"}) {
+    const std::string failure = failure_after([&](auto& state) { state.numbers.at(name) = -1.0; });
+    EXPECT_TRUE(failure.ends_with(fmt::format("{} = -1 is negative", name))) << failure;
+  }
+  for (const auto& [name, unused] : sound.numbers) {
+    const std::string failure = failure_after([&](auto& state) { state.numbers.at(name) = infinite; });
+    EXPECT_TRUE(failure.ends_with(name + " is not a finite number")) << failure;
+    EXPECT_EQ(failure_after([&](auto& state) { state.numbers.erase(name); }), "the checkpoint has no " + name);
+  }
+  for (const double row : {1e300, 0.0, -1e300})  // rows without end; one too many; none any more
+    EXPECT_EQ(failure_after([&](auto& state) { state.numbers.at("inlet_1_last_row") = row; }),
+              "the checkpoint's inlet is elsewhere");
+
+  for (const int owner : {-1, ranks}) {
+    const std::string failure = failure_after([&](auto& state) { state.owner.back() = owner; });
+    EXPECT_TRUE(failure.ends_with("a cell's owner is no rank")) << failure;
+  }
+  const auto on_last_rank = [&](const auto& change) {
+    return failure_after([&](auto& state) {
+      if (rank == ranks - 1) change(state);
+    });
+  };
+  for (const double place : {infinite, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_TRUE(on_last_rank([&](auto& state) { state.particles.position[1][0] = place; }).ends_with("not finite"));
+    EXPECT_TRUE(on_last_rank([&](auto& state) { state.searched_position[1][1] = place; }).ends_with("not finite"));
+  }
+  const auto expect_no_matrix = [&](const auto& change) {
+    const std::string failure = on_last_rank([&](auto& state) { change(state.coarse); });
+    EXPECT_TRUE(failure.ends_with("the coarse matrix is none")) << failure;
+  };
+  expect_no_matrix([&](auto& coarse) { coarse.cell.back() = static_cast<std::int64_t>(sound.owner.size()); });
+  expect_no_matrix([&](auto& coarse) { coarse.cell.front() = -1; });
+  expect_no_matrix([&](auto& coarse) { std::swap(coarse.cell[0], coarse.cell[1]); });
+  expect_no_matrix([&](auto& coarse) { coarse.column.back() = nodes; });
+  expect_no_matrix([&](auto& coarse) { coarse.column.back() = -1; });
+  expect_no_matrix([&](auto& coarse) { ++coarse.length.back(); });
+  expect_no_matrix([&](auto& coarse) { coarse.value.front() = infinite; });
+  expect_no_matrix([&](auto& coarse) {  // without a diagonal
+    for (double& value : coarse.value) value = std::min(value, 0.0);
+  });
+  expect_no_matrix([&](auto& coarse) {
+    coarse.length[0] += coarse.length[1] + 1;
+    coarse.length[1] = -1;
+  });
+}
+
+TEST_F(Restart, RefusesPartsThatDoNotMakeTheWhole) {
+  const Case config = jet_case({});
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  write(MPI_COMM_WORLD, path("x.checkpoint"), simulation);
+  constexpr std::int64_t large = std::int64_t{1} << 62;
+  for (const char* name : {"/VTKHDF/NumberOfPoints", "/checkpoint/coarse_rows", "/checkpoint/coarse_entries"}) {
+    for (const std::int64_t shift : {1'000'000, 0}) {
+      SCOPED_TRACE(fmt::format("{} {}", name, shift));
+      if (rank_of(MPI_COMM_WORLD) == 0) {
+        fs::copy_file(path("x.checkpoint"), path("y.checkpoint"), fs::copy_options::overwrite_existing);
+        const hid_t file = H5Fopen(path("y.checkpoint").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+        std::vector<std::int64_t> parts(static_cast<std::size_t>(ranks_of(MPI_COMM_WORLD)));
+        const hid_t old = H5Dopen2(file, name, H5P_DEFAULT);
+        H5Dread(old, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, parts.data());
+        H5Dclose(old);
+        // Their sum stays the same, where there are two; or overflows.
+        parts.front() += shift;
+        parts.back() -= parts.size() > 1 ? shift : 0;
+        if (shift == 0) parts.assign(parts.size(), large);
+        Hdf5Writer writer(MPI_COMM_SELF, path("parts.h5"), true);
+        writer.dataset("/parts", parts);
+        writer.finish();
+        const hid_t from = H5Fopen(path("parts.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+        H5Ldelete(file, name, H5P_DEFAULT);
+        H5Ocopy(from, "/parts", file, name, H5P_DEFAULT, H5P_DEFAULT);
+        H5Fclose(from);
+        H5Fclose(file);
+      }
+      MPI_Barrier(MPI_COMM_WORLD);
+      const std::string failure = failure_of([&] { read_checkpoint<2>(MPI_COMM_WORLD, path("y.checkpoint")); });
+      EXPECT_TRUE(failure.ends_with("do not make the whole")) << failure;
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+  }
 }
 
 // A byte that changed anywhere is noticed, or it stands in a gap between what is read.

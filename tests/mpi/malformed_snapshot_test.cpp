@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "impinge/io/snapshot.hpp"
+#include "impinge/io/snapshot_layout.hpp"
 #include "impinge/parallel/exchange.hpp"
 
 namespace impinge {
@@ -201,14 +202,16 @@ TEST_F(MalformedSnapshot, WrongShapes) {
   expect_refused_after(replace(pressure, {}, H5T_NATIVE_DOUBLE), "dataset " + pressure + " has 0 dimensions");
   expect_refused_after(replace(points, {huge, 3}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false), "");
   expect_refused_after(replace(points, {n, 3}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false), "not stored in one piece");
-  expect_refused_after(
-      [&](hid_t id) {
-        for (const char* name :
-             {"velocity", "pressure", "pressure_impulse", "number_density", "type", "free_surface", "id"})
-          replace(std::string("/VTKHDF/PointData/") + name, {huge}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false)(id);
-        replace(points, {huge, 3}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false)(id);
-      },
-      "not stored in one piece");
+  const auto replace_all = [&](hsize_t rows) {
+    return [=](hid_t id) {
+      for (const char* name :
+           {"velocity", "pressure", "pressure_impulse", "number_density", "type", "free_surface", "id"})
+        replace(std::string("/VTKHDF/PointData/") + name, {rows}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false)(id);
+      replace(points, {rows, 3}, H5T_NATIVE_DOUBLE, H5D_CONTIGUOUS, false)(id);
+    };
+  };
+  expect_refused_after(replace_all(hsize_t{1} << 30), "not stored in one piece");
+  expect_refused_after(replace_all(huge), "more than one rank can hold");
 }
 
 TEST_F(MalformedSnapshot, WrongTypesAndLayouts) {
@@ -240,6 +243,20 @@ TEST_F(MalformedSnapshot, WrongTypesAndLayouts) {
         H5Dclose(set);
       },
       "has the unknown type 9");
+}
+
+TEST_F(MalformedSnapshot, MoreParticlesThanARankHolds) {
+  const StateReader reader(sound());
+  try {
+    reader.particles<2>(std::int64_t{1} << 31, []<class Number>(const std::string&, int) {
+      ADD_FAILURE() << "was read";
+      return std::vector<Number>{};
+    });
+    ADD_FAILURE();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.what(),
+              "cannot read " + sound() + ": 2147483648 particles are more than one rank can hold, which is 2147483647");
+  }
 }
 
 TEST_F(MalformedSnapshot, WrongAttributes) {

@@ -30,6 +30,12 @@ struct Inlet {
     for (std::size_t k = 0; k < place.size(); ++k) position += place[k] * across[k];
     return position;
   }
+  /// True where the hindmost row stands as pass_open_boundaries leaves it, up to rounding.
+  bool is_in_place() const {
+    constexpr double rounding = 1e-6;
+    const double behind = last_row / spacing + rows;  // the plane that a new row would stand on [rows]
+    return behind >= -rounding && behind <= 1.0 + rounding;
+  }
   double distance_past(const Vector<Dim>& position) const { return dot(position - corner, direction); }
 };
 

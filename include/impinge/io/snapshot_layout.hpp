@@ -2,7 +2,10 @@
 // What snapshots and checkpoints have in common: the header and, in the VTKHDF layout (UnstructuredGrid of vertices,
 // one piece per rank), the particles.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -75,9 +78,11 @@ class StateReader : public Hdf5Reader {
   SnapshotHeader header() const;
 
   /// This rank's particles, `count` of them, by read.operator()<Number>(dataset path, columns). Throws FileError where
-  /// a particle is of no known type.
+  /// a particle is of no known type or there are more than a rank can hold.
   template <int Dim, class Read>
   Particles<Dim> particles(std::int64_t count, Read&& read) const {
+    constexpr int most = std::numeric_limits<int>::max();
+    if (count > most) fail(fmt::format("{} particles are more than one rank can hold, which is {}", count, most));
     Particles<Dim> result;
     result.owned = static_cast<int>(count);
     for_fields<Dim>([&]<class T>(const Field<Dim, T>& field) {

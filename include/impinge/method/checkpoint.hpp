@@ -28,4 +28,10 @@ struct Checkpoint {
   CoarseRows coarse;
 };
 
+/// What no run can have saved in this rank's state and what could do harm: numbers that are out of range, indices that
+/// point to nothing; empty if all is well. `first_node`: number of this rank's first row of the coarse matrix; `nodes`:
+/// rows of all ranks. Not collective.
+template <int Dim>
+std::string problem_of(const Checkpoint<Dim>& state, int rank, int ranks, std::int64_t first_node, std::int64_t nodes);
+
 }  // namespace impinge
