@@ -14,6 +14,7 @@
 
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
+#include "impinge/core/mpi.hpp"
 #include "impinge/validation/validation.hpp"
 
 namespace {
@@ -88,7 +89,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? done : wrong_input;
   }
   MPI_Init(&argc, &argv);
-  const int code = run_program(arguments);
+  const int code = launched_process().rank == 0 ? run_program(arguments) : done;  // of several processes the first
   MPI_Finalize();
   return code;
 }

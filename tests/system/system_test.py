@@ -504,6 +504,16 @@ class Run(System):
         done = call(BIN / "impinge-validate", "out", cwd=self.directory)
         self.assertEqual(done.returncode, 1, done.stderr)
 
+    def test_of_several_processes_the_first_validates(self):
+        self.run_case("--set", "time.end=0.01")
+        alone = call(BIN / "impinge-validate", "out", "--no-figures", cwd=self.directory)
+        together = call(BIN / "impinge-validate", "out", "--no-figures", cwd=self.directory, ranks=3)
+        self.assertEqual((together.returncode, together.stdout), (0, alone.stdout))
+        for rank, expected in (("0", alone.stdout), ("2", "")):
+            done = call(BIN / "impinge-validate", "out", "--no-figures", cwd=self.directory,
+                        environment={**os.environ, "PMI_SIZE": "4", "PMI_RANK": rank})
+            self.assertEqual((done.returncode, done.stdout), (0, expected))
+
     def test_validation_names_a_snapshot_that_it_cannot_read(self):
         self.run_case("--set", "time.end=0.004")
         last = self.snapshots()[-1]
