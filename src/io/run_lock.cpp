@@ -13,6 +13,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -72,11 +73,40 @@ bool is_alive(const Owner& owner, const std::string& path) {
   return stat(path.c_str(), &status) == 0 && std::difftime(std::time(nullptr), status.st_mtime) < oldest_beat;
 }
 
+/// A name beside the lock that no other process uses; short, since the case's name may be long.
+std::string own_name(const std::string& path) {
+  const Owner self = this_process();
+  return fmt::format("{}.{:x}.{}", path, std::hash<std::string>{}(self.host), self.process);
+}
+
+/// Writes a file, opened with these flags beside O_WRONLY and O_CREAT; an error's number or 0.
+int write_file(const std::string& path, int flags, const std::string& text) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | flags, 0644);
+  if (file < 0) return errno;
+  const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const int reason = written ? 0 : errno;
+  close(file);
+  if (!written) unlink(path.c_str());
+  return reason;
+}
+
+/// Makes the lock unless there is one; an error's number or 0. It has its text from the start, so that whoever is
+/// killed leaves none without; not so on file systems without links.
+int create_lock(const std::string& path) {
+  const Owner self = this_process();
+  const std::string text = fmt::format("{} {} {} {}\n", self.host, self.process, self.started, self.job);
+  const std::string own = own_name(path);
+  int reason = write_file(own, O_TRUNC, text);
+  if (reason != 0) return reason;
+  if (link(own.c_str(), path.c_str()) != 0) reason = errno;
+  unlink(own.c_str());
+  return reason == EPERM || reason == ENOTSUP ? write_file(path, O_EXCL, text) : reason;
+}
+
 /// Takes a dead owner's lock away. Another process may do so at the same time and have put its own in the place: that
 /// one is put back.
 void remove_dead_lock(const std::string& path) {
-  const Owner self = this_process();
-  const std::string taken = fmt::format("{}.{}.{}", path, self.host, self.process);
+  const std::string taken = own_name(path);
   if (rename(path.c_str(), taken.c_str()) != 0) return;
   std::error_code ignored;
   if (is_alive(owner_in(taken), taken)) fs::create_hard_link(taken, path, ignored);
@@ -88,18 +118,8 @@ void remove_dead_lock(const std::string& path) {
 RunLock::RunLock(const std::string& directory, const std::string& name)
     : path_((fs::path(directory) / (name + ".lock")).string()), last_beat_(Clock::now()) {
   for (int attempt = 0; attempt < 3; ++attempt) {
-    const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644);
-    if (file >= 0) {
-      const Owner self = this_process();
-      const std::string text = fmt::format("{} {} {} {}\n", self.host, self.process, self.started, self.job);
-      const bool written = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-      const int reason = errno;
-      close(file);
-      if (written) return;
-      unlink(path_.c_str());
-      errno = reason;
-      break;
-    }
+    errno = create_lock(path_);
+    if (errno == 0) return;
     if (errno != EEXIST) break;
     const Owner owner = owner_in(path_);
     if (is_alive(owner, path_)) {

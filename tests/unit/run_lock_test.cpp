@@ -42,7 +42,7 @@ TEST_F(RunLocks, HaveOneOwner) {
     EXPECT_NE(refusal().find("process " + std::to_string(getpid()) + " on "), std::string::npos) << refusal();
     const RunLock other(directory_, "other");  // of another run
   }
-  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_TRUE(fs::is_empty(directory_));
   EXPECT_EQ(refusal(), "");
 }
 
