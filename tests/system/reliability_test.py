@@ -296,7 +296,7 @@ class Faults(Reliability):
             self.expect_that_it_goes_on(out)
             return done.returncode != 0
 
-        points = self.at_calls(sorted({*range(1, 30), *range(1, 230, stride)}), is_killed)  # all of the start
+        points = self.at_calls(sorted({*range(1, 30), *range(1, 300, stride)}), is_killed)  # all of the start
         print(f"{points} kill points survived", end=" ", flush=True)
         self.assertGreaterEqual(points, 200 // stride)
 
@@ -317,7 +317,7 @@ class Faults(Reliability):
             self.expect_that_it_goes_on(out)
             return done.returncode != 0
 
-        self.assertGreater(self.at_calls(range(3, 230, 13), is_told), 10)
+        self.assertGreater(self.at_calls(range(3, 250, 13), is_told), 10)
 
     def test_errors_of_one_rank_of_two_end_both(self):
         for rank, calls in ((0, (61, 136)), (1, (17, 73))):
