@@ -33,9 +33,10 @@ ablate 4-gradient-plain pressure.corrected_gradient=false
 ablate 5-zero-at-particles free_surface.zero_outside=false
 ablate 6-no-shifting shifting.coefficient=0
 ablate 7-velocity-not-shifted shifting.correct_velocity=false
-ablate 8-gamma-0.01 pressure.density_speed=0
+ablate 8-gamma-0.01 pressure.density_rate=0
 ablate 9-collision-0.8 collision.distance=0.8
 ablate a-number-density pressure.packing=false
 ablate b-no-repulsion shifting.least_distance=0
 ablate c-new-velocity time.mean_velocity=false
+ablate d-radii-2.1-4.01 kernel.radius=2.1 kernel.laplacian_radius=4.01
 /usr/bin/python3 jobs/table.py "$root" | tee "$root/table.txt"

@@ -5,7 +5,7 @@
 namespace impinge {
 
 template <int Dim>
-BoundaryFlow pass_open_boundaries(double dt, std::vector<Inlet<Dim>>& inlets, const std::vector<Outlet<Dim>>& outlets,
+BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::vector<Outlet<Dim>>& outlets,
                                   std::int64_t& next_id, Particles<Dim>& particles,
                                   const std::function<bool(const Vector<Dim>&)>& owns) {
   BoundaryFlow flow;
@@ -28,7 +28,6 @@ BoundaryFlow pass_open_boundaries(double dt, std::vector<Inlet<Dim>>& inlets, co
   particles.resize(kept);
 
   for (Inlet<Dim>& inlet : inlets) {
-    inlet.last_row += inlet.speed * dt;
     while (inlet.last_row - inlet.spacing >= -inlet.rows * inlet.spacing) {
       inlet.last_row -= inlet.spacing;
       for (std::size_t k = 0; k < inlet.section.size(); ++k) {
@@ -43,9 +42,9 @@ BoundaryFlow pass_open_boundaries(double dt, std::vector<Inlet<Dim>>& inlets, co
   return flow;
 }
 
-template BoundaryFlow pass_open_boundaries(double, std::vector<Inlet<2>>&, const std::vector<Outlet<2>>&, std::int64_t&,
+template BoundaryFlow pass_open_boundaries(std::vector<Inlet<2>>&, const std::vector<Outlet<2>>&, std::int64_t&,
                                            Particles<2>&, const std::function<bool(const Vector<2>&)>&);
-template BoundaryFlow pass_open_boundaries(double, std::vector<Inlet<3>>&, const std::vector<Outlet<3>>&, std::int64_t&,
+template BoundaryFlow pass_open_boundaries(std::vector<Inlet<3>>&, const std::vector<Outlet<3>>&, std::int64_t&,
                                            Particles<3>&, const std::function<bool(const Vector<3>&)>&);
 
 }  // namespace impinge

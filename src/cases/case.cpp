@@ -93,7 +93,7 @@ Case parse(const std::vector<NamedText>& files, const std::vector<std::string>& 
   Keys keys(c.dimension);
   declare(keys, c);
   if (read_files(keys, files, settings)) {
-    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel.laplacian_radius, c.fluid};
+    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid};
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }

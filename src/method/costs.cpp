@@ -8,7 +8,7 @@ namespace impinge {
 
 template <int Dim>
 std::size_t bytes_per_particle() {
-  return 2 * field_bytes<Dim> + sizeof(PressureRole) + 2 * sizeof(double) + 5 * sizeof(Vector<Dim>) +
+  return 2 * field_bytes<Dim> + sizeof(PressureRole) + 4 * sizeof(double) + 5 * sizeof(Vector<Dim>) +
          sizeof(Matrix<Dim>) + sizeof(PetscInt);
 }
 
@@ -19,10 +19,11 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   constexpr double pair = sizeof(int) + sizeof(double);
   constexpr double entry = sizeof(PetscInt) + sizeof(double);
   // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice; the
-  // consistent scheme also surface marks, asymmetry and velocity.
+  // consistent scheme also surface marks, asymmetry and velocity, and twice the crowding.
   double traffic = sizeof(typename Decomposition<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
   if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
   if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
+  if (settings.pressure.packing) traffic += 2.0 * sizeof(double);
   if (settings.free_surface.zero_outside || settings.shifting.coefficient > 0.0) traffic += sizeof(Vector<Dim>) + 1.0;
   if (settings.shifting.coefficient > 0.0 && settings.shifting.correct_velocity) traffic += sizeof(Vector<Dim>);
   return {.particle_memory = static_cast<double>(bytes_per_particle<Dim>()) + 2.0 * sizeof(int) +

@@ -11,8 +11,10 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
   const double n0 = lattice.number_density;
   const FreeSurfaceSettings& limits = settings.free_surface;
   const bool walls_measure = settings.walls.model == WallModel::mirror;
-  const bool corrects = settings.pressure.corrected_divergence || settings.pressure.corrected_gradient;
-  const bool needs_asymmetry = limits.zero_outside || settings.shifting.coefficient > 0.0;
+  const PressureSettings& pressure = settings.pressure;
+  const bool corrects = pressure.corrected_divergence || pressure.corrected_gradient;
+  const bool needs_asymmetry =
+      limits.zero_outside || settings.shifting.coefficient > 0.0 || pressure.corrected_gradient;
   number_density(near, particles.number_density);
   state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);
   state.asymmetry.assign(particles.position.size(), {});
@@ -36,7 +38,7 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
     if (type == ParticleType::wall) state.asymmetry[self] = {};  // the free surface is the fluid's
   }
   state.decomposition.halo().refresh(state.role, particles.owned);
-  if (corrects || needs_asymmetry) state.refresh(particles.free_surface);
+  if (corrects || needs_asymmetry || pressure.packing) state.refresh(particles.free_surface);
   if (needs_asymmetry) state.refresh_directions(state.asymmetry);
 }
 

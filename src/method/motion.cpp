@@ -30,11 +30,10 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double visc
           viscosity * rule.dt * velocity_laplacian<Dim>(row, particles.velocity, laplacian_factor, i);
     });
   }
-  const double excess = (1.0 - rule.new_share) * rule.dt;
   for (std::size_t i = 0; i < change.size(); ++i) {
     if (!state.moves(i)) continue;
     particles.velocity[i] += change[i];
-    particles.position[i] -= excess * change[i];
+    particles.position[i] -= rule.early * change[i];
   }
 }
 
@@ -54,7 +53,8 @@ void collide(const CollisionSettings& settings, double spacing, double dt, State
 }
 
 template <int Dim>
-void advance(double dt, Particles<Dim>& particles) {
+void advance(double dt, std::vector<Inlet<Dim>>& inlets, Particles<Dim>& particles) {
+  for (Inlet<Dim>& inlet : inlets) inlet.last_row += inlet.speed * dt;
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
     if (particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::inlet)
       particles.position[i] += dt * particles.velocity[i];
@@ -63,7 +63,7 @@ void advance(double dt, Particles<Dim>& particles) {
 #define IMPINGE_INSTANTIATE(Dim)                                                                   \
   template void accelerate(const MotionRule&, const BodyForce<Dim>&, double, double, State<Dim>&); \
   template void collide(const CollisionSettings&, double, double, State<Dim>&);                    \
-  template void advance(double, Particles<Dim>&);
+  template void advance(double, std::vector<Inlet<Dim>>&, Particles<Dim>&);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)
 #undef IMPINGE_INSTANTIATE

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impinge/method/surface.hpp"
+
 namespace impinge {
 namespace {
 
@@ -14,6 +16,8 @@ void for_pairs(const PairList& list, int i, Use&& use) {
 }
 
 constexpr double least_determinant = 0.15;
+constexpr double least_surface_determinant = 0.3;
+constexpr double surface_point_weight = 0.5;
 
 template <int Dim>
 Matrix<Dim> inverse_or(const Matrix<Dim>& moment, const Matrix<Dim>& other) {
@@ -82,22 +86,23 @@ double divergence(const PairList& near, std::span<const Vector<Dim>> position, s
 }
 
 template <int Dim>
-double corrected_divergence(const PairList& near, std::span<const Vector<Dim>> position,
-                            std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
-                            const Matrix<Dim>& correction, double n0, int i) {
+Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                              std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
+                              const Matrix<Dim>& correction, double n0, int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vector<Dim> centre = position[self];
   const Vector<Dim> own = velocity[self];
-  double sum = 0.0;
+  Matrix<Dim> sum;
   for_pairs(near, i, [&](std::size_t j, double weight) {
     const Vector<Dim> offset = position[j] - centre;
     Vector<Dim> relative = velocity[j] - own;
     const Vector<Dim> normal = wall_normal[self] + wall_normal[j];
     const double square = dot(normal, normal);
     if (square > 0.0) relative = dot(relative, normal) / square * normal;
-    sum += dot(relative, correction * offset) * weight / dot(offset, offset);
+    sum.add_product(relative, Dim / n0 * weight / dot(offset, offset) * offset);
   });
-  return Dim / n0 * sum;
+  for (Vector<Dim>& row : sum.row) row = correction * row;  // which is symmetric
+  return sum;
 }
 
 template <int Dim>
@@ -153,6 +158,27 @@ Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<D
   Vector<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
   for (int k = 0; k < Dim; ++k) change[k] = std::clamp(change[k], least[k], most[k]);
   return change;
+}
+
+template <int Dim>
+std::optional<Vector<Dim>> surface_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                                            std::span<const double> pressure, const Vector<Dim>& normal, double spacing,
+                                            double n0, int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  const double own = pressure[static_cast<std::size_t>(i)];
+  const double distance = SurfaceClosure<Dim>::least_depth * spacing;
+  Vector<Dim> sum = -surface_point_weight * own / distance * normal;
+  Matrix<Dim> moment;
+  moment.add_product(surface_point_weight * normal, normal);
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    const Vector<Dim> offset = position[j] - centre;
+    const Vector<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
+    sum += (pressure[j] - own) * weighted;
+    moment.add_product(weighted, offset);
+  });
+  const double size = determinant(moment);
+  if (size < least_surface_determinant) return std::nullopt;
+  return 1.0 / size * (adjugate(moment) * sum);
 }
 
 double least_pressure(const PairList& near, std::span<const double> pressure, int i) {
@@ -223,9 +249,12 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
   template Matrix<Dim> moment_correction<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);             \
   template double divergence<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>, double, \
                                   int);                                                                                \
-  template double corrected_divergence<Dim>(const PairList&, std::span<const Vector<Dim>>,                             \
-                                            std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,                \
-                                            const Matrix<Dim>&, double, int);                                          \
+  template Matrix<Dim> velocity_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,                           \
+                                              std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,              \
+                                              const Matrix<Dim>&, double, int);                                        \
+  template std::optional<Vector<Dim>> surface_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,             \
+                                                            std::span<const double>, const Vector<Dim>&, double,       \
+                                                            double, int);                                              \
   template Vector<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>, \
                                                double, const Matrix<Dim>&, double, int);                               \
   template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \

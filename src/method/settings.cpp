@@ -8,7 +8,9 @@ namespace {
 /// The defaults that the scheme sets: use(setting, value of the consistent scheme, value of the paper's).
 template <class Use>
 void for_scheme_defaults(MethodSettings& s, Use&& use) {
-  use(s.pressure.density_speed, 0.35, 0.0);
+  use(s.kernel.radius, 2.6, 2.1);
+  use(s.kernel.laplacian_radius, 2.1, 4.01);
+  use(s.pressure.density_rate, s.dimension == 3 ? 1.0 : 0.1, 0.0);
   use(s.pressure.packing, true, false);
   use(s.pressure.corrected_divergence, true, false);
   use(s.pressure.corrected_gradient, true, false);
@@ -51,21 +53,21 @@ void declare_method(Keys& keys, MethodSettings& s) {
            {.unit = "dp", .range = above_to(1, 6), .fixed = true});
 
   keys.add("pressure.gamma", s.pressure.gamma,
-           "weight of the density term in the source of the pressure equation, unless pressure.density_speed "
+           "weight of the density term in the source of the pressure equation, unless pressure.density_rate "
            "is set; 1 - gamma weighs the divergence",
            {.range = from_to(0, 1)});
-  keys.add("pressure.density_speed", s.pressure.density_speed,
-           "speed at which density errors are corrected, over the largest fluid speed, but at least "
-           "sqrt(|g| dp): gamma is (speed dt/dp)^2, at most 1; 0: pressure.gamma",
-           {.unit = "u_max", .range = from_to(0, 5), .fallback = "0.0 where gamma is given"});
+  keys.add("pressure.density_rate", s.pressure.density_rate,
+           "rate at which density errors are corrected: gamma is this times u dt/dp, at most 1 (u: the largest fluid "
+           "speed, at least 3 sqrt(|g| dp)); 0: pressure.gamma",
+           {.unit = "u/dp", .range = from_to(0, 5), .fallback = "in 3D 1.0; 0.0 where gamma is given"});
   keys.add("pressure.packing", s.pressure.packing,
            "measure density errors by the sum of (1 - r/r_e)^4 (1 + 4 r/r_e), which disorder leaves alone, "
-           "instead of the number density");
+           "and its mean around a particle, instead of the number density");
   keys.add("pressure.corrected_divergence", s.pressure.corrected_divergence,
            "correct the divergence by the local moment matrix, so that it is exact on linear velocities");
   keys.add("pressure.corrected_gradient", s.pressure.corrected_gradient,
-           "a gradient of pressure differences corrected likewise; at the surface particles the paper's, "
-           "beside them of differences from the smallest pressure around");
+           "a gradient of pressure differences corrected likewise, with p = 0 beyond the surface particles; the "
+           "rougher the surface, the more of the paper's at it, and of the smallest pressure around beside it");
   keys.add("pressure.tolerance", s.pressure.tolerance,
            "relative residual at which the pressure equation counts as solved", {.range = above_to(0, 1e-6)});
   keys.add("pressure.clamp_negative", s.pressure.clamp_negative, "set negative pressures to zero after the solve");
@@ -111,8 +113,8 @@ void declare_method(Keys& keys, MethodSettings& s) {
            {.unit = "s", .range = positive, .required = true});
   keys.add("time.cfl", s.time.cfl, "the time step is at most cfl dp / |u|max", {.range = above_to(0, 1)});
   keys.add("time.mean_velocity", s.time.mean_velocity,
-           "in a step, particles move with the mean of their old and their new velocity, not with the new "
-           "one");
+           "particles move for half a step with their old velocity and for half with their new one, and the "
+           "pressure is that in between; false: with the new one");
   keys.add("time.max_speed", s.time.max_speed, "a faster particle counts as divergence and ends the run",
            {.unit = "m/s",
             .range = positive,
@@ -129,7 +131,7 @@ void derive_method(const Keys& keys, MethodSettings& s, double reference_speed) 
   for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
     if (!keys.given(setting)) setting = s.scheme == Scheme::consistent ? consistent : paper;
   });
-  if (keys.given(s.pressure.gamma) && !keys.given(s.pressure.density_speed)) s.pressure.density_speed = 0.0;
+  if (keys.given(s.pressure.gamma) && !keys.given(s.pressure.density_rate)) s.pressure.density_rate = 0.0;
   if (!keys.given(s.time.max_speed)) {
     if (reference_speed == 0.0 && keys.usable(s.particles.spacing, s.time.dt))
       reference_speed = s.particles.spacing / s.time.dt;  // fluid at rest: one spacing a step
@@ -138,10 +140,6 @@ void derive_method(const Keys& keys, MethodSettings& s, double reference_speed) 
 }
 
 void check_method(Keys& keys, const MethodSettings& s) {
-  if (keys.usable(s.kernel.radius, s.kernel.laplacian_radius) && s.kernel.radius > s.kernel.laplacian_radius) {
-    keys.mistake(s.kernel.radius, fmt::format("larger than the Laplacian's radius; allowed: (1, {}] (dp)",
-                                              number_text(s.kernel.laplacian_radius)));
-  }
   for (std::size_t k = 1; k < s.fluid.gravity_at.size(); ++k) {
     const GravityEntry &before = s.fluid.gravity_at[k - 1], &here = s.fluid.gravity_at[k];
     if (keys.usable(before.time, here.time) && here.time <= before.time)

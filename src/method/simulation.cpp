@@ -28,7 +28,7 @@ State<Dim> make_state(MPI_Comm comm, const MethodSettings& settings, const Scene
                               far, settings.walls.model == WallModel::mirror);
   return {.particles = {},
           .decomposition = std::move(decomposition),
-          .walls = MirrorWalls<Dim>(scene.mirrors, far),
+          .walls = MirrorWalls<Dim>(scene.mirrors, std::max(near, far)),
           .search = std::move(search),
           .wall_normal = {},
           .asymmetry = {},
@@ -84,18 +84,18 @@ void Simulation<Dim>::try_step(double target) {
   const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
   // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
-  const double reference_speed = std::sqrt(acceleration * spacing);
+  const double fall_speed = std::sqrt(acceleration * spacing);
   {
     const PhaseLog log(Phase::predict);
     accelerate(rule, force, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
     collide(settings_.collision, spacing, report_.dt, state_);
-    advance(report_.dt, state_.particles);
+    advance(rule.before, scene_.inlets, state_.particles);
   }
   pass_boundaries();
   redistribute();
   find_neighbours();
-  solve_pressure(force, reference_speed);
-  correct(rule, reference_speed);
+  solve_pressure(rule, force, std::max(report_.max_speed, 3.0 * fall_speed));
+  correct(rule, std::max(report_.max_speed, fall_speed));
   report_.time = end;
   measure_totals();
 }
@@ -207,7 +207,7 @@ void Simulation<Dim>::pass_boundaries() {
   Particles<Dim>& particles = state_.particles;
   particles.resize(particles.owned);
   const BoundaryFlow flow =
-      pass_open_boundaries<Dim>(report_.dt, scene_.inlets, scene_.outlets, scene_.next_id, particles,
+      pass_open_boundaries<Dim>(scene_.inlets, scene_.outlets, scene_.next_id, particles,
                                 [&](const Vector<Dim>& position) { return state_.decomposition.owns(position); });
   report_.in += sum_over_ranks(comm_, flow.entered);
   report_.out += sum_over_ranks(comm_, flow.left);
@@ -256,28 +256,24 @@ void Simulation<Dim>::find_neighbours() {
 }
 
 template <int Dim>
-void Simulation<Dim>::solve_pressure(const BodyForce<Dim>& force, double reference_speed) {
-  report_.pressure =
-      projection_.solve({.dt = report_.dt, .reference_speed = reference_speed, .max_speed = report_.max_speed}, force,
-                        state_, report_.pressure.iterations, report_.cold_solves);
+void Simulation<Dim>::solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed) {
+  report_.pressure = projection_.solve({.dt = rule.dt, .after = rule.after, .speed = speed}, force, state_,
+                                       report_.pressure.iterations, report_.cold_solves);
   if (!report_.pressure.failure.empty()) fail(Phase::solve, report_.pressure.failure);
 }
 
 // u = u* - dt/rho grad p, the displacement that goes with it, and the shift.
 template <int Dim>
-void Simulation<Dim>::correct(const MotionRule& rule, double reference_speed) {
+void Simulation<Dim>::correct(const MotionRule& rule, double speed) {
   const PhaseLog log(Phase::correct);
   Particles<Dim>& particles = state_.particles;
   const std::vector<Vector<Dim>> change = projection_.velocity_change(report_.dt, state_);
-  std::vector<Vector<Dim>> displacement(change.size());
+  for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
+  const Shift<Dim> shift = shift_of(settings_.shifting, speed, rule.dt, settings_.particles.spacing,
+                                    projection_.lattice().number_density, state_);
+  advance(rule.after, scene_.inlets, particles);
   for (std::size_t i = 0; i < change.size(); ++i) {
-    particles.velocity[i] += change[i];
-    displacement[i] = rule.displacement(change[i]);
-  }
-  const Shift<Dim> shift = shift_of(settings_.shifting, std::max(report_.max_speed, reference_speed), report_.dt,
-                                    settings_.particles.spacing, projection_.lattice().number_density, state_);
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    particles.position[i] += displacement[i] + shift.displacement[i];
+    particles.position[i] += rule.late * change[i] + shift.displacement[i];
     particles.velocity[i] += shift.velocity_change[i];
   }
 }

@@ -8,6 +8,8 @@ namespace impinge {
 namespace {
 
 constexpr double table_step = 0.02;  // [dp]
+constexpr double rough = 0.8;        // mean of the normals' sum at which a surface counts as rough
+constexpr double flat = 0.95;        // likewise as flat
 constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
 
 // Over the lattice points beyond a flat surface that a particle at a depth misses, sum W (1 + d_g/depth). Lengths in
@@ -68,6 +70,25 @@ double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, 
 }
 
 template <int Dim>
+double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymmetry,
+                        std::span<const std::uint8_t> free_surface, int i) {
+  Vector<Dim> sum;
+  int count = 0;
+  const auto add = [&](std::size_t j) {
+    const double size = norm(asymmetry[j]);
+    if (!free_surface[j] || size == 0.0) return;
+    sum += 1.0 / size * asymmetry[j];
+    ++count;
+  };
+  add(static_cast<std::size_t>(i));
+  for (int k = near.begin(i); k < near.end(i); ++k)
+    add(static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]));
+  if (free_surface[static_cast<std::size_t>(i)] && count < 2) return 0.0;
+  if (count == 0) return 1.0;
+  return std::clamp((norm(sum) / count - rough) / (flat - rough), 0.0, 1.0);
+}
+
+template <int Dim>
 Vector<Dim> surface_normal(const PairList& near, std::span<const Vector<Dim>> asymmetry,
                            std::span<const std::uint8_t> free_surface, int i) {
   const auto self = static_cast<std::size_t>(i);
@@ -85,6 +106,8 @@ template class SurfaceClosure<2>;
 template class SurfaceClosure<3>;
 template double surface_depth<2>(const PairRow&, std::span<const Vector<2>>, std::span<const Vector<2>>,
                                  std::span<const std::uint8_t>, double, int);
+template double surface_flatness<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
+template double surface_flatness<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template double surface_depth<3>(const PairRow&, std::span<const Vector<3>>, std::span<const Vector<3>>,

@@ -74,7 +74,7 @@ MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
       particles > 0 ? Counts{static_cast<double>(particles), static_cast<double>(particles)} : count(scene);
   const double owned = counts.particles / ranks;
   // Around a cube of the owned ones.
-  const double halo = std::pow(std::pow(owned, 1.0 / Dim) + 2.0 * config.kernel.laplacian_radius, Dim) - owned;
+  const double halo = std::pow(std::pow(owned, 1.0 / Dim) + 2.0 * config.kernel.largest(), Dim) - owned;
   return {.particles = counts.particles,
           .rank = (owned + halo) * costs.particle_memory + counts.rows / ranks * costs.row_memory +
                   cells_of(scene, config) * costs.cell_memory + libraries};

@@ -94,7 +94,7 @@ Scene<2> make_jet(const MethodSettings& method, const JetSettings& jet, const Pl
   inlet.across = {across};
   inlet.speed = jet.speed;
   inlet.spacing = dp;
-  inlet.rows = static_cast<int>(std::ceil(method.kernel.laplacian_radius)) + 1;
+  inlet.rows = static_cast<int>(std::ceil(method.kernel.largest())) + 1;
   inlet.last_row = -(inlet.rows - 0.5) * dp;
   for (int k = 0; k < static_cast<int>(std::lround(width / dp)); ++k) inlet.section.push_back({(k + 0.5) * dp});
   const double length = jet.inlet_distance * width;  // along the axis, inlet plane to plate

@@ -110,8 +110,8 @@ void check_tank(Keys& keys, const TankSettings& tank, const std::vector<FluidReg
                                         ? "no fluid: neither a height nor a [[fluid.region]]; allowed: > 0 (m)"
                                         : "the fluid is given by [[fluid.region]], too; allowed: one of the two");
   }
-  if (mirrored && keys.usable(tank.size, in.spacing, in.laplacian_radius)) {
-    const double least = std::max<double>(in.laplacian_radius, wall_layers) * in.spacing;
+  if (mirrored && keys.usable(tank.size, in.spacing, in.kernel.radius, in.kernel.laplacian_radius)) {
+    const double least = std::max<double>(in.kernel.largest(), wall_layers) * in.spacing;
     if (std::ranges::min(size) < least) {
       keys.mistake(tank.size,
                    fmt::format("mirrors nearer to each other than the kernel reaches; allowed: >= {:.6g} (m)", least));
@@ -127,11 +127,11 @@ void check_box(Keys& keys, const PeriodicBoxSettings& box, const SceneInputs& in
   const auto size = components(box.size, in.dimension);
   if (keys.usable(box.size)) check_count(keys, in, product(size));
   check_multiples(keys, in, box.size, size);
-  if (keys.usable(box.size, in.spacing, in.laplacian_radius)) {
-    const double least = 3.0 * in.laplacian_radius * in.spacing;
+  if (keys.usable(box.size, in.spacing, in.kernel.radius, in.kernel.laplacian_radius)) {
+    const double least = 3.0 * in.kernel.cell_edge() * in.spacing;
     if (std::ranges::min(size) < least) {
       keys.mistake(box.size,
-                   fmt::format("a period is shorter than three Laplacian radii; allowed: >= {:.6g} (m)", least));
+                   fmt::format("a period is shorter than three background cells; allowed: >= {:.6g} (m)", least));
     }
   }
 }

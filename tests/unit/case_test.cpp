@@ -103,7 +103,9 @@ std::vector<std::string> resolved_lines(const Case& config) {
   return lines;
 }
 
-const char* const scheme_keys[] = {"pressure.density_speed",
+const char* const scheme_keys[] = {"kernel.radius",
+                                   "kernel.laplacian_radius",
+                                   "pressure.density_rate",
                                    "pressure.packing",
                                    "pressure.corrected_divergence",
                                    "pressure.corrected_gradient",
@@ -124,7 +126,9 @@ std::string scheme_value(const std::string& scheme, const std::string& key) {
 TEST(Case, TheSchemeSetsDefaults) {
   const auto check = [](const Case& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
-    EXPECT_EQ(c.pressure.density_speed, consistent ? 0.35 : 0.0);
+    EXPECT_EQ(c.kernel.radius, consistent ? 2.6 : 2.1);
+    EXPECT_EQ(c.kernel.laplacian_radius, consistent ? 2.1 : 4.01);
+    EXPECT_EQ(c.pressure.density_rate, consistent ? 0.1 : 0.0);
     EXPECT_EQ(c.pressure.packing, consistent);
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
@@ -207,19 +211,19 @@ TEST(Case, PathsAreUtf8WithoutWordsOfAShell) {
   EXPECT_EQ(mistakes_in("name = '$HOME'"), Texts{"case.toml: output.directory = \"output/$HOME\"" + shell});
 }
 
-TEST(Case, AGivenGammaTakesThePlaceOfTheDensitySpeed) {
-  EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_speed, 0.0);
-  const Case both = parse("pressure = {gamma = 0.02, density_speed = 0.3}");
-  EXPECT_EQ(both.pressure.density_speed, 0.3);
+TEST(Case, AGivenGammaTakesThePlaceOfTheDensityRate) {
+  EXPECT_EQ(parse("pressure.gamma = 0.02").pressure.density_rate, 0.0);
+  const Case both = parse("pressure = {gamma = 0.02, density_rate = 0.3}");
+  EXPECT_EQ(both.pressure.density_rate, 0.3);
   EXPECT_EQ(both.pressure.gamma, 0.02);
 }
 
 TEST(Case, MirrorsAreAtLeastAKernelApart) {
   EXPECT_EQ(
-      mistakes_in("tank.size = [0.04, 0.3]", tank_base),
+      mistakes_in("tank.size = [0.04, 0.3]\nkernel.radius = 4.5", tank_base),
       Texts{"case.toml:1: tank.size = [0.04, 0.3]: mirrors nearer to each other than the kernel reaches; allowed: "
-            ">= 0.0401 (m)"});
-  EXPECT_EQ(parse("tank.size = [0.05, 0.3]", tank_base).tank.size[0], 0.05);
+            ">= 0.045 (m)"});
+  EXPECT_EQ(parse("tank.size = [0.04, 0.3]", tank_base).tank.size[0], 0.04);
   EXPECT_EQ(parse("tank.size = [0.04, 0.3]\nscheme = \"paper\"", tank_base).tank.size[0], 0.04);
 }
 
@@ -260,8 +264,8 @@ TEST(Case, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: scheme = \"best\": unknown word; allowed: \"consistent\", \"paper\""});
   EXPECT_EQ(mistakes_in("walls.model = \"bricks\""),
             Texts{"case.toml:1: walls.model = \"bricks\": unknown word; allowed: \"mirror\", \"particles\""});
-  EXPECT_EQ(mistakes_in("pressure.density_speed = 5.1"),
-            Texts{"case.toml:1: pressure.density_speed = 5.1: out of range; allowed: [0, 5] (u_max)"});
+  EXPECT_EQ(mistakes_in("pressure.density_rate = 5.1"),
+            Texts{"case.toml:1: pressure.density_rate = 5.1: out of range; allowed: [0, 5] (u/dp)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
             Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
   EXPECT_EQ(mistakes_in("shifting.least_distance = 1.1"),
@@ -507,8 +511,6 @@ TEST(Case, RefusesValuesThatNoRunCouldUse) {
        "4: plate.begin = 0.1: "},
       {"free_surface = {surface_density = 0.9, interior_density = 0.8}",
        "1: free_surface.surface_density = 0.9: larger than the interior's density; allowed: [0, 0.8] (n0)"},
-      {"kernel = {radius = 3, laplacian_radius = 2}",
-       "1: kernel.radius = 3.0: larger than the Laplacian's radius; allowed: (1, 2.0] (dp)"},
   };
   expect_refused(jet, jet_base);
   const std::vector<Malformed> tank{
@@ -609,9 +611,7 @@ TEST(Case, TheAverageStartsBeforeTheEnd) {
             Texts{"case.toml:1: output.average_start = 5.0: the average starts after the end; allowed: [0, 5.0) (s)"});
 }
 
-TEST(Case, KernelRadiiAndSurfaceDensitiesAreOrdered) {
-  EXPECT_EQ(mistakes_in("kernel.radius = 4.5"),
-            Texts{"case.toml:1: kernel.radius = 4.5: larger than the Laplacian's radius; allowed: (1, 4.01] (dp)"});
+TEST(Case, SurfaceDensitiesAreOrdered) {
   EXPECT_EQ(mistakes_in("free_surface.surface_density = 0.98"),
             Texts{"case.toml:1: free_surface.surface_density = 0.98: larger than the interior's density; allowed: [0, "
                   "0.97] (n0)"});
@@ -653,10 +653,13 @@ TEST(Case, TheFluidStaysBelowTheWalls) {
             Texts{"case.toml:1: tank.fluid_height = 0.31: higher than the walls; allowed: (0, 0.3] (m)"});
 }
 
-TEST(Case, PeriodsAreThreeRadiiLong) {
-  EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.025]", box_base),
-            Texts{"case.toml:1: periodic_box.size = [0.1, 0.025]: a period is shorter than three Laplacian radii; "
-                  "allowed: >= 0.030075 (m)"});
+TEST(Case, PeriodsAreThreeCellsLong) {
+  EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.02]", box_base),
+            Texts{"case.toml:1: periodic_box.size = [0.1, 0.02]: a period is shorter than three background cells; "
+                  "allowed: >= 0.0225 (m)"});
+  EXPECT_EQ(mistakes_in("periodic_box.size = [0.1, 0.025]\nkernel.laplacian_radius = 4", box_base),
+            Texts{"case.toml:1: periodic_box.size = [0.1, 0.025]: a period is shorter than three background cells; "
+                  "allowed: >= 0.03 (m)"});
 }
 
 TEST(Case, ParticlesCanBeCounted) {

@@ -137,5 +137,31 @@ TYPED_TEST(FreeSurface, NormalIsTheUnitVectorOutOfTheFluid) {
   EXPECT_GT(this->normal_at(1.5)[0], 0.01);
 }
 
+TYPED_TEST(FreeSurface, IsFlatWhereItsNormalsAgree) {
+  const auto flatness = [&](int i) {
+    return surface_flatness<TestFixture::Dim>(this->lattice_.near, this->asymmetry_, this->marked_, i);
+  };
+  const int top = this->at_depth(0.5), below = this->at_depth(1.5);
+  EXPECT_EQ(flatness(top), 1.0);
+  EXPECT_EQ(flatness(below), 1.0);
+  EXPECT_EQ(flatness(this->at_depth(5.5)), 1.0);  // no surface there
+  // The length of an asymmetry does not count.
+  this->asymmetry_[static_cast<std::size_t>(top)] *= 0.1;
+  EXPECT_EQ(flatness(below), 1.0);
+  // One normal across of n: |sum|/n = sqrt((n - 1)^2 + 1)/n.
+  Vector<TestFixture::Dim>& own = this->asymmetry_[static_cast<std::size_t>(top)];
+  own = {};
+  own[0] = 2.0;
+  double n = 1.0;
+  for (int k = this->lattice_.near.begin(top); k < this->lattice_.near.end(top); ++k)
+    n += this->marked_[static_cast<std::size_t>(this->lattice_.near.index[static_cast<std::size_t>(k)])];
+  EXPECT_NEAR(flatness(top), std::clamp((std::hypot(n - 1.0, 1.0) / n - 0.8) / 0.15, 0.0, 1.0), 1e-12);
+  EXPECT_LT(flatness(top), 1.0);
+  // A surface particle alone has no surface around it.
+  std::fill(this->marked_.begin(), this->marked_.end(), std::uint8_t{0});
+  this->marked_[static_cast<std::size_t>(top)] = 1;
+  EXPECT_EQ(flatness(top), 0.0);
+}
+
 }  // namespace
 }  // namespace impinge

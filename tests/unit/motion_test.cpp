@@ -1,5 +1,7 @@
 // Body forces, the length of a step, and mirrors.
 
+#include "impinge/method/motion.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,6 +54,49 @@ TEST(BodyForce, InSpaceAddsTheTableAndThePull) {
   EXPECT_EQ(BodyForce<3>(fluid, 1.0).at({}), (Vector<3>{{1.0, 2.0, -3.0}}));
   EXPECT_EQ(BodyForce<3>(fluid, 1.5).at({}), (Vector<3>{{2.0, 4.0, -6.0}}));
   EXPECT_DOUBLE_EQ(BodyForce<3>(fluid, 1.25).largest(MPI_COMM_SELF, {}), 1.5 * std::sqrt(14.0));
+}
+
+/// Energy of a particle on a spring of frequency 1 after many steps by the rule, over that at the start; the spring's
+/// force acts where the pressure does.
+double energy_ratio(bool mean_velocity, double dt) {
+  TimeSettings time;
+  time.mean_velocity = mean_velocity;
+  const MotionRule rule(time, dt);
+  std::vector<Inlet<2>> none;
+  Particles<2> particles;
+  particles.append({{{1.0, 0.0}}, {}, 0.0, 0.0, 0, ParticleType::fluid});
+  particles.owned = 1;
+  Vector<2>&x = particles.position[0], &u = particles.velocity[0];
+  double largest = 0.0;
+  for (int step = 0; step * dt < 100.0; ++step) {
+    advance(rule.before, none, particles);
+    const Vector<2> change = -rule.dt * x;
+    u += change;
+    advance(rule.after, none, particles);
+    x += rule.late * change;
+    if (step * dt > 90.0) largest = std::max(largest, dot(x, x) + dot(u, u));
+  }
+  return largest;
+}
+
+TEST(MotionRule, OfTheMeanVelocityKeepsTheEnergyOfAnOscillation) {
+  EXPECT_NEAR(energy_ratio(true, 0.1), 1.0, 0.003);
+  EXPECT_NEAR(energy_ratio(true, 0.05), 1.0, 0.003 / 4.0);
+  EXPECT_LT(energy_ratio(false, 0.1), 0.5);
+}
+
+TEST(MotionRule, OfTheMeanVelocityTakesAFallExactly) {
+  TimeSettings time;
+  for (const bool mean : {true, false}) {
+    time.mean_velocity = mean;
+    const MotionRule rule(time, 0.1);
+    double x = 0.0, u = 0.0;
+    for (int step = 0; step < 10; ++step) {
+      u += -10.0 * rule.dt;
+      x += rule.before * u - rule.early * -10.0 * rule.dt + rule.after * u;
+    }
+    EXPECT_NEAR(x, mean ? -5.0 : -5.5, 1e-12);
+  }
 }
 
 TEST(TimeStep, IsTheSmallestOfItsLimits) {

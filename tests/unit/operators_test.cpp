@@ -19,7 +19,7 @@ Vector<Dim> linear_velocity(const Vector<Dim>& x) {
 }
 
 template <int Dim>
-constexpr double trace = Dim == 2 ? 2 + 3 + 2 : 2 + 3 + 4 + 2;  // of its gradient
+constexpr double linear_divergence = Dim == 2 ? 2 + 3 + 2 : 2 + 3 + 4 + 2;  // of its gradient
 
 template <int Dim>
 void set_linear_fields(Particles<Dim>& particles) {
@@ -83,7 +83,7 @@ TYPED_TEST(Operators, DivergenceIsExactOnLinearFields) {
     set_linear_fields(lattice.particles);
     EXPECT_NEAR(divergence<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
                                 lattice.sums.number_density, lattice.centre()),
-                trace<Dim>, 1e-12);
+                linear_divergence<Dim>, 1e-12);
   }
 }
 
@@ -96,15 +96,56 @@ TYPED_TEST(Operators, CorrectedOnesAreExactOnLinearFieldsOfAnyCloud) {
     const std::vector<Vector<Dim>> no_wall(p.position.size());
     const double n0 = cloud.sums.number_density;
     for (const int i : {cloud.centre(), cloud.on_surface()}) {
-      EXPECT_GT(std::abs(divergence<Dim>(cloud.near, p.position, p.velocity, n0, i) - trace<Dim>), 0.01);
+      EXPECT_GT(std::abs(divergence<Dim>(cloud.near, p.position, p.velocity, n0, i) - linear_divergence<Dim>), 0.01);
       const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
-      EXPECT_NEAR(corrected_divergence<Dim>(cloud.near, p.position, p.velocity, no_wall, correction, n0, i), trace<Dim>,
-                  1e-10);
+      const Matrix<Dim> slope = velocity_gradient<Dim>(cloud.near, p.position, p.velocity, no_wall, correction, n0, i);
+      EXPECT_NEAR(trace(slope), linear_divergence<Dim>, 1e-10);
       const double own = p.pressure[static_cast<std::size_t>(i)];
       expect_gradient_of_linear_pressure(
           corrected_gradient<Dim>(cloud.near, p.position, p.pressure, own, correction, n0, i), 1e-10);
     }
   }
+}
+
+TYPED_TEST(Operators, TheVelocityGradientHasTheComponentsInItsRows) {
+  constexpr int Dim = TypeParam::value;
+  Cloud<Dim> cloud(0.2);
+  const Particles<Dim>& p = cloud.particles;
+  set_linear_fields(cloud.particles);
+  const std::vector<Vector<Dim>> no_wall(p.position.size());
+  const double n0 = cloud.sums.number_density;
+  const int i = cloud.centre();
+  const Matrix<Dim> correction = moment_correction<Dim>(cloud.near, p.position, n0, i);
+  const Matrix<Dim> slope = velocity_gradient<Dim>(cloud.near, p.position, p.velocity, no_wall, correction, n0, i);
+  double square = 0.0;
+  for (int k = 0; k < Dim; ++k) {
+    for (int l = 0; l < Dim; ++l) {
+      const auto expected = [](int a, int b) {
+        return (a == b ? a + 2.0 : 0.0) + (b == 0 ? 3.0 : b == 1 ? -1.0 : 0.0);
+      };
+      EXPECT_NEAR(slope.row[static_cast<std::size_t>(k)][l], expected(k, l), 1e-10);
+      square += expected(k, l) * expected(l, k);
+    }
+  }
+  EXPECT_NEAR(trace_of_square(slope), square, 1e-9);
+}
+
+TYPED_TEST(Operators, TheSurfaceGradientIsExactOnAPressureThatIsZeroThere) {
+  constexpr int Dim = TypeParam::value;
+  Cloud<Dim> lattice(0.0);
+  Particles<Dim>& p = lattice.particles;
+  const double n0 = lattice.sums.number_density;
+  const int i = lattice.on_surface();
+  Vector<Dim> up;
+  up[Dim - 1] = 1.0;
+  for (std::size_t j = 0; j < p.pressure.size(); ++j) p.pressure[j] = 4.0 * (11.0 - p.position[j][Dim - 1]);
+  const auto gradient = [&] { return surface_gradient<Dim>(lattice.near, p.position, p.pressure, up, 1.0, n0, i); };
+  ASSERT_TRUE(gradient());
+  EXPECT_NEAR(norm(*gradient() + 4.0 * up), 0.0, 1e-12);
+  // A pressure along the surface counts, too.
+  for (std::size_t j = 0; j < p.pressure.size(); ++j)
+    p.pressure[j] += 2.0 * (p.position[j][0] - p.position[static_cast<std::size_t>(i)][0]);
+  EXPECT_NEAR((*gradient())[0], 2.0, 1e-12);
 }
 
 TYPED_TEST(Operators, CorrectedGradientPushesFromACrowdWhereItsBaseIsLow) {
@@ -289,7 +330,7 @@ TYPED_TEST(Operators, RepulsionPartsFluidThatIsTooNear) {
   EXPECT_EQ(of(0, 0.9), Vector<Dim>{});
 }
 
-TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
+TYPED_TEST(Operators, TheVelocityGradientLetsTheFluidSlipAlongWalls) {
   constexpr int Dim = TypeParam::value;
   const double n0 = 4.0;
   for (const ParticleType behind : {ParticleType::wall, ParticleType::ghost}) {
@@ -299,8 +340,8 @@ TYPED_TEST(Operators, CorrectedDivergenceLetsTheFluidSlipAlongWalls) {
     auto normal = pair.no_wall();
     normal[1][1] = 1.0;
     const auto of = [&](int i) {
-      return corrected_divergence<Dim>(pair.pairs(), pair.position, pair.velocity, normal, Matrix<Dim>::identity(), n0,
-                                       i);
+      return trace(
+          velocity_gradient<Dim>(pair.pairs(), pair.position, pair.velocity, normal, Matrix<Dim>::identity(), n0, i));
     };
     EXPECT_EQ(of(0), 0.0);
     EXPECT_EQ(of(1), 0.0);  // the wall's own row
@@ -422,6 +463,14 @@ TYPED_TEST(Operators, CollisionsConserveMomentum) {
   EXPECT_LT(norm(sum), 1e-13 * cloud.particles.owned);
 }
 
+TYPED_TEST(Operators, ThereIsNoSurfaceGradientWithoutNeighboursAround) {
+  constexpr int Dim = TypeParam::value;
+  Group<Dim> pair;
+  pair.add(0.0, 0.0, 0.0, 1.0);
+  pair.add(0.8, 0.0, 0.0, 2.0);
+  EXPECT_FALSE(surface_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, Vector<Dim>{}, 1.0, 4.0, 0));
+}
+
 TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   constexpr int Dim = TypeParam::value;
   Group<Dim> single;
@@ -431,9 +480,10 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   number_density(none, density);
   EXPECT_EQ(density[0], 0.0);
   EXPECT_EQ(asymmetry<Dim>(none, single.position, 4.0, 0), Vector<Dim>{});
-  EXPECT_EQ(corrected_divergence<Dim>(none, single.position, single.velocity, single.no_wall(), Matrix<Dim>::identity(),
-                                      4.0, 0),
+  EXPECT_EQ(trace(velocity_gradient<Dim>(none, single.position, single.velocity, single.no_wall(),
+                                         Matrix<Dim>::identity(), 4.0, 0)),
             0.0);
+  EXPECT_FALSE(surface_gradient<Dim>(none, single.position, single.pressure, Vector<Dim>{}, 1.0, 4.0, 0));
   EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, 1.0, Matrix<Dim>::identity(), 4.0, 0),
             Vector<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);

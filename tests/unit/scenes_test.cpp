@@ -263,7 +263,8 @@ TEST(Geometry, JetIsTwoDimensional) { EXPECT_THROW(scene_of<3>(jet_case(60.0)), 
 BoundaryFlow pass(
     Scene<2>& scene, double dt, Particles<2>& particles,
     const std::function<bool(const Vector<2>&)>& owns = [](const Vector<2>&) { return true; }) {
-  return pass_open_boundaries<2>(dt, scene.inlets, scene.outlets, scene.next_id, particles, owns);
+  for (Inlet<2>& inlet : scene.inlets) inlet.last_row += inlet.speed * dt;
+  return pass_open_boundaries<2>(scene.inlets, scene.outlets, scene.next_id, particles, owns);
 }
 
 /// The inlet under test: fluid leaves the list after a step, so that only the buffer is left.
@@ -329,7 +330,7 @@ class JetInlet : public testing::TestWithParam<double> {
 TEST_P(JetInlet, FeedsWholeRowsAtIrregularSteps) {
   expect_whole_rows();
   const int initial_rows = particles_.owned / row_length;
-  EXPECT_GE(initial_rows * dp, 4.01 * dp);
+  EXPECT_GE(initial_rows, 2.6);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   std::int64_t entered = 0;

@@ -55,10 +55,10 @@ struct BoundaryFlow {
 };
 
 /// Lets inlet particles that crossed their plane become fluid, removes fluid past the outlets, and adds the rows that
-/// the inlets need after a step of `dt` [s], with ids from `next_id` on; a new particle is added where `owns` says its
+/// the inlets need behind their last, with ids from `next_id` on; a new particle is added where `owns` says its
 /// position is this rank's. Particles have no halo. Not collective; last_row and next_id stay the same on every rank.
 template <int Dim>
-BoundaryFlow pass_open_boundaries(double dt, std::vector<Inlet<Dim>>& inlets, const std::vector<Outlet<Dim>>& outlets,
+BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::vector<Outlet<Dim>>& outlets,
                                   std::int64_t& next_id, Particles<Dim>& particles,
                                   const std::function<bool(const Vector<Dim>&)>& owns);
 

@@ -71,6 +71,22 @@ struct Matrix {
   }
 };
 
+template <int Dim>
+double trace(const Matrix<Dim>& m) {
+  double sum = 0.0;
+  for (int k = 0; k < Dim; ++k) sum += m.row[static_cast<std::size_t>(k)][k];
+  return sum;
+}
+
+/// Trace of m m.
+template <int Dim>
+double trace_of_square(const Matrix<Dim>& m) {
+  double sum = 0.0;
+  for (int k = 0; k < Dim; ++k)
+    for (int l = 0; l < Dim; ++l) sum += m.row[static_cast<std::size_t>(k)][l] * m.row[static_cast<std::size_t>(l)][k];
+  return sum;
+}
+
 /// The matrix with m adjugate(m) = determinant(m) identity.
 inline Matrix<2> adjugate(const Matrix<2>& m) {
   return {{{{{m.row[1][1], -m.row[0][1]}}, {{-m.row[1][0], m.row[0][0]}}}}};

@@ -1,25 +1,29 @@
 #pragma once
 // How velocities move particles, and what changes velocities besides the pressure.
 
+#include "impinge/boundaries/inlet.hpp"
 #include "impinge/method/body_force.hpp"
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"
 
 namespace impinge {
 
-/// The rule by which a change of velocity in a step moves a particle: r_new = r + dt (u_old + share (u_new - u_old)).
-/// share = 1/2: the mean of both velocities, second order in time; 1: the new one.
+/// How a step moves particles. With the new velocity (paper): by dt u* before the pressure is known and by dt (u - u*)
+/// after it. With the mean velocity: by dt/2 u_old before and by dt/2 u_new after, so that the pressure acts in the
+/// middle of the step (position Verlet): second order in time, and it neither damps nor feeds an oscillation.
 struct MotionRule {
-  double dt;         ///< [s]
-  double new_share;  ///< share of the new velocity [-]
+  double dt;      ///< [s]
+  double before;  ///< time that particles move before the pressure is known [s]
+  double after;   ///< likewise after it [s]
+  double late;    ///< time that the pressure's change of a velocity counts for, back from there [s]
+  double early;   ///< time before the pressure that the forces' change of a velocity does not count for [s]
 
-  MotionRule(const TimeSettings& time, double dt_) : dt(dt_), new_share(time.mean_velocity ? 0.5 : 1.0) {}
-
-  /// What a change of velocity u - u* [m/s] after advance() moves a particle by [m].
-  template <int Dim>
-  Vector<Dim> displacement(const Vector<Dim>& change) const {
-    return new_share * dt * change;
-  }
+  MotionRule(const TimeSettings& time, double dt_)
+      : dt(dt_),
+        before(time.mean_velocity ? 0.5 * dt_ : dt_),
+        after(dt_ - before),
+        late(time.mean_velocity ? 0.0 : dt_),
+        early(time.mean_velocity ? before : 0.0) {}
 };
 
 /// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step. `laplacian_factor`: 2 Dim/(n0 lambda)
@@ -32,8 +36,8 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double visc
 template <int Dim>
 void collide(const CollisionSettings& collision, double spacing, double dt, State<Dim>& state);
 
-/// r* = r + dt u*, for the fluid and the blocks of the inlets. Not collective.
+/// r += dt u, for the fluid and the blocks of the inlets. Not collective.
 template <int Dim>
-void advance(double dt, Particles<Dim>& particles);
+void advance(double dt, std::vector<Inlet<Dim>>& inlets, Particles<Dim>& particles);
 
 }  // namespace impinge

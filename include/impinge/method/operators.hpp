@@ -3,6 +3,7 @@
 // halo, in every array; results are written for owned particles only, and are zero where the row is empty.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "impinge/core/vector.hpp"
@@ -33,13 +34,14 @@ template <int Dim>
 double divergence(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
                   double n0, int i);
 
-/// Corrected divergence Dim/n0 sum (u_j - u_i).L_i r_ij W / r_ij^2 [1/s], exact on linear velocities. Walls let the
-/// fluid slip: of a pair with a wall, whose normal `wall_normal` has for its particles and ghosts and which is zero
-/// elsewhere, only the relative velocity along the normal counts.
+/// Corrected velocity gradient Dim/n0 sum (u_j - u_i) (L_i r_ij)^T W / r_ij^2 [1/s], row k that of component k; exact
+/// on linear velocities, and its trace is the divergence. Walls let the fluid slip: of a pair with a wall, whose normal
+/// `wall_normal` has for its particles and ghosts and which is zero elsewhere, only the relative velocity along the
+/// normal counts.
 template <int Dim>
-double corrected_divergence(const PairList& near, std::span<const Vector<Dim>> position,
-                            std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
-                            const Matrix<Dim>& correction, double n0, int i);
+Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                              std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
+                              const Matrix<Dim>& correction, double n0, int i);
 
 /// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
 /// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
@@ -55,6 +57,15 @@ template <int Dim>
 Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                                std::span<const double> pressure, double base, const Matrix<Dim>& correction, double n0,
                                int i);
+
+/// Pressure gradient [Pa/m] of a surface particle, by least squares over the differences to its neighbours and to p = 0
+/// half a spacing out along the unit normal: exact on a pressure that is linear through zero at the surface. On a flat
+/// lattice the weight of that point, 1/2, makes up for what the neighbours lack in the moment matrix. Nothing where the
+/// neighbours are too few or in line for it. `spacing`: dp [m].
+template <int Dim>
+std::optional<Vector<Dim>> surface_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                                            std::span<const double> pressure, const Vector<Dim>& normal, double spacing,
+                                            double n0, int i);
 
 /// The smallest pressure of particle i and its neighbours [Pa].
 double least_pressure(const PairList& near, std::span<const double> pressure, int i);

@@ -1,6 +1,8 @@
 #pragma once
 // What a run of the method can be told, besides its scene. SI units; lengths that the method scales are in dp.
 
+#include <algorithm>
+
 #include "impinge/config/key.hpp"
 #include "impinge/parallel/graph_partition.hpp"
 #include "impinge/particles/kernel.hpp"
@@ -37,16 +39,20 @@ struct ParticleSettings {
 
 struct KernelSettings {
   KernelType type = KernelType::non_singular;
-  double radius = 2.1;             ///< r_e of number density, gradient and divergence [dp]
-  double laplacian_radius = 4.01;  ///< r_e of the Laplacian [dp]
+  double radius{};            ///< r_e of number density, gradient and divergence [dp]; by scheme
+  double laplacian_radius{};  ///< r_e of the Laplacian [dp]; by scheme
+
+  double largest() const { return std::max(radius, laplacian_radius); }
+  /// Least edge of the background cells [dp]: no pair reaches over one; 3, since smaller ones cost more than they save.
+  double cell_edge() const { return std::max(3.0, largest()); }
 };
 
 struct PressureSettings {
-  double gamma = 0.01;          ///< weight of the density term in the PPE source, unless density_speed is set
-  double density_speed{};       ///< speed at which a density error is corrected [u_max]; by scheme
+  double gamma = 0.01;          ///< weight of the density term in the PPE source, unless density_rate is set
+  double density_rate{};        ///< rate at which a density error is corrected [u/dp]; by scheme
   bool corrected_divergence{};  ///< divergence exact on linear velocities; by scheme
-  bool packing{};               ///< density errors by the packing, not by the number density; by scheme
-  bool corrected_gradient{};    ///< gradient by differences of pressure, but at the surface; by scheme
+  bool packing{};               ///< density errors by the packing around, not by the number density; by scheme
+  bool corrected_gradient{};    ///< gradient exact on linear pressures; by scheme
   double tolerance = 1e-6;      ///< relative residual of the PPE solve
   bool clamp_negative = true;   ///< set negative pressures to zero after the solve
 };
@@ -77,7 +83,7 @@ struct TimeSettings {
   double end = 0.0;        ///< [s]
   double dt = 0.0;         ///< largest step [s]
   double cfl = 0.2;        ///< dt <= cfl dp / |u|max
-  bool mean_velocity{};    ///< particles move with the mean of the old and the new velocity; by scheme
+  bool mean_velocity{};    ///< half a step with the old velocity, half with the new; by scheme
   double max_speed = 0.0;  ///< speed that counts as divergence [m/s]
 };
 
@@ -99,9 +105,9 @@ struct MethodSettings {
   double average_start = 0.0;         ///< start of the wall-pressure average [s]; key output.average_start
 };
 
-/// Least edge of a run's background cells [m]: the Laplacian's radius.
+/// Least edge of a run's background cells [m].
 inline double least_cell_edge(const MethodSettings& settings) {
-  return settings.kernel.laplacian_radius * settings.particles.spacing;
+  return settings.kernel.cell_edge() * settings.particles.spacing;
 }
 
 /// Declares dimension, scheme and the tables from [fluid] to [time].

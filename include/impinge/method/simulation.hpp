@@ -67,8 +67,8 @@ class Simulation {
   void migrate();
   void count_strays(const Strays& strays);
   void find_neighbours();
-  void solve_pressure(const BodyForce<Dim>& force, double reference_speed);
-  void correct(const MotionRule& rule, double reference_speed);
+  void solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed);
+  void correct(const MotionRule& rule, double speed);
   void measure_totals();
 
   void save(Checkpoint<Dim>& state) const;

@@ -38,6 +38,13 @@ template <int Dim>
 double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> asymmetry,
                      std::span<const std::uint8_t> free_surface, double spacing, int i);
 
+/// Flatness of the free surface at particle i [0, 1], from the unit normals n_j (along the asymmetries) of the surface
+/// particles among it and its neighbours: 0 up to |sum n_j| = 0.8 of their number, 1 from 0.95 on, linear between; 1
+/// without any, 0 for a surface particle alone.
+template <int Dim>
+double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymmetry,
+                        std::span<const std::uint8_t> free_surface, int i);
+
 /// Unit normal of the free surface at particle i, out of the fluid, from the asymmetries of the surface particles among
 /// it and its neighbours, weighted; zero without any.
 template <int Dim>

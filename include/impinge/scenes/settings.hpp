@@ -55,8 +55,8 @@ struct SceneSettings {
 /// The settings of other modules that a scene depends on.
 struct SceneInputs {
   const int& dimension;
-  const double& spacing;           ///< dp [m]
-  const double& laplacian_radius;  ///< [dp]
+  const double& spacing;  ///< dp [m]
+  const KernelSettings& kernel;
   const FluidSettings& fluid;
 };
 

@@ -9,6 +9,8 @@
 
 namespace impinge {
 
+constexpr int crowding_passes = 2;  // of means over neighbours
+
 template <int Dim>
 Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const CellGrid<Dim>& cells)
     : settings_(settings),
@@ -74,38 +76,79 @@ void Projection<Dim>::find_image_offsets(double dt, const BodyForce<Dim>& force,
 
 template <int Dim>
 std::vector<double> Projection<Dim>::sources(const Step& step, State<Dim>& state) const {
-  Particles<Dim>& particles = state.particles;
   const PressureSettings& pressure = settings_.pressure;
-  const double n0 = near_sums_.number_density;
   const double rho = settings_.fluid.density;
   const double dt = step.dt;
-  const double speed = std::max(pressure.density_speed * step.max_speed, step.reference_speed);
-  const double gamma = pressure.density_speed > 0.0
-                           ? std::min(1.0, std::pow(speed * dt / settings_.particles.spacing, 2))
+  const double gamma = pressure.density_rate > 0.0
+                           ? std::min(1.0, pressure.density_rate * step.speed * dt / settings_.particles.spacing)
                            : pressure.gamma;
+  const std::vector<double> crowded = crowding(state);
   std::vector<double> source(state.owned(), 0.0);
-  for (int i = 0; i < particles.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (state.role[self] != PressureRole::unknown) {
-      particles.pressure[self] = 0.0;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    if (state.role[i] != PressureRole::unknown) {
+      state.particles.pressure[i] = 0.0;
       continue;
     }
-    const double flow = pressure.corrected_divergence
-                            ? corrected_divergence<Dim>(state.near(), particles.position, particles.velocity,
-                                                        state.wall_normal, state.correction[self], n0, i)
-                            : divergence<Dim>(state.near(), particles.position, particles.velocity, n0, i);
-    source[self] += (1.0 - gamma) * rho / dt * flow - gamma * rho / (dt * dt) * crowding(state, i);
+    source[i] = (1.0 - gamma) * rho / dt * divergence_after(step.after, state, static_cast<int>(i));
+    source[i] -= gamma * rho / (dt * dt) * crowded[i];
   }
   return source;
 }
 
-// (n* - n0)/n0, or the packing's. The free surface misses neighbours, which says nothing of crowding.
+// Along the way of the particles, d/dt div u = -(grad u):(grad u)^T but for the acceleration.
 template <int Dim>
-double Projection<Dim>::crowding(const State<Dim>& state, int i) const {
-  const auto self = static_cast<std::size_t>(i);
-  if (state.particles.free_surface[self]) return 0.0;
-  return settings_.pressure.packing ? packing(state.near(), settings_.kernel.type, i) / near_sums_.packing - 1.0
-                                    : state.particles.number_density[self] / near_sums_.number_density - 1.0;
+double Projection<Dim>::divergence_after(double time, const State<Dim>& state, int i) const {
+  const Particles<Dim>& particles = state.particles;
+  const double n0 = near_sums_.number_density;
+  if (!settings_.pressure.corrected_divergence)
+    return divergence<Dim>(state.near(), particles.position, particles.velocity, n0, i);
+  const Matrix<Dim> slope =
+      velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
+                             state.correction[static_cast<std::size_t>(i)], n0, i);
+  return trace(slope) - time * trace_of_square(slope);
+}
+
+// (n* - n0)/n0, or the packing's; owned particles first, then room for the others. The free surface misses neighbours,
+// which says nothing of crowding.
+template <int Dim>
+std::vector<double> Projection<Dim>::crowding(const State<Dim>& state) const {
+  const Particles<Dim>& particles = state.particles;
+  std::vector<double> crowded(particles.position.size(), 0.0);
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (state.role[self] != PressureRole::unknown || particles.free_surface[self]) continue;
+    crowded[self] = settings_.pressure.packing
+                        ? packing(state.near(), settings_.kernel.type, i) / near_sums_.packing - 1.0
+                        : particles.number_density[self] / near_sums_.number_density - 1.0;
+  }
+  if (settings_.pressure.packing)
+    for (int pass = 0; pass < crowding_passes; ++pass) smooth(state, crowded);
+  return crowded;
+}
+
+// A particle's crowding is mostly the disorder around it; the mean over its surroundings tells of the volume.
+template <int Dim>
+void Projection<Dim>::smooth(const State<Dim>& state, std::vector<double>& field) const {
+  const std::vector<std::uint8_t>& free_surface = state.particles.free_surface;
+  const PairList& near = state.near();
+  const double own_weight = 2.0 * with_kernel(settings_.kernel.type, [&](auto kernel) {
+                              return decltype(kernel)::weight(1.0, settings_.kernel.radius);
+                            });
+  state.refresh(field);
+  std::vector<double> mean = field;
+  for (std::size_t i = 0; i < state.owned(); ++i) {
+    if (free_surface[i]) continue;
+    double weights = own_weight;
+    double sum = own_weight * field[i];
+    for (int k = near.begin(static_cast<int>(i)); k < near.end(static_cast<int>(i)); ++k) {
+      const auto j = static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]);
+      if (free_surface[j]) continue;
+      weights += near.weight[static_cast<std::size_t>(k)];
+      sum += near.weight[static_cast<std::size_t>(k)] * field[j];
+    }
+    mean[i] = sum / weights;
+  }
+  field = std::move(mean);
 }
 
 // Of p = 0 beyond the surface, on the diagonal of a particle's row.
@@ -163,32 +206,38 @@ void Projection<Dim>::share_pressure(State<Dim>& state) const {
 
 template <int Dim>
 std::vector<Vector<Dim>> Projection<Dim>::velocity_change(double dt, const State<Dim>& state) const {
-  const Particles<Dim>& particles = state.particles;
   const double factor = dt / settings_.fluid.density;
-  const double n0 = near_sums_.number_density;
   std::vector<Vector<Dim>> change(state.owned());
-  for (int i = 0; i < particles.owned; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (!state.moves(self)) continue;
-    const Vector<Dim> gradient = settings_.pressure.corrected_gradient && !particles.free_surface[self]
-                                     ? corrected_gradient<Dim>(state.near(), particles.position, particles.pressure,
-                                                               base_pressure(state, i), state.correction[self], n0, i)
-                                     : pressure_gradient<Dim>(state.near(), particles.position, particles.pressure,
-                                                              particles.type, state.wall_normal, n0, i);
-    change[self] = -factor * gradient;
-  }
+  for (std::size_t i = 0; i < change.size(); ++i)
+    if (state.moves(i)) change[i] = -factor * gradient(state, static_cast<int>(i));
   return change;
 }
 
-// Differences of pressure alone leave the forces of a pair unequal: beside the surface, whose particles have them
-// equal, that feeds its waves, so the pressures there push as well.
+// Differences of pressure alone leave the forces of a pair unequal. On a rough surface and beside it that makes energy,
+// so that pressures push there as well: equally for both at the surface, off the smallest pressure around beside it.
 template <int Dim>
-double Projection<Dim>::base_pressure(const State<Dim>& state, int i) const {
+Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, int i) const {
+  const auto self = static_cast<std::size_t>(i);
+  const Particles<Dim>& particles = state.particles;
   const PairList& near = state.near();
-  for (int k = near.begin(i); k < near.end(i); ++k)
-    if (state.particles.free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])])
-      return least_pressure(near, state.particles.pressure, i);
-  return state.particles.pressure[static_cast<std::size_t>(i)];
+  const double n0 = near_sums_.number_density;
+  const auto pushing = [&] {
+    return pressure_gradient<Dim>(near, particles.position, particles.pressure, particles.type, state.wall_normal, n0,
+                                  i);
+  };
+  if (!settings_.pressure.corrected_gradient) return pushing();
+  const double flatness = surface_flatness<Dim>(near, state.asymmetry, particles.free_surface, i);
+  if (!particles.free_surface[self]) {
+    double base = particles.pressure[self];
+    if (flatness < 1.0) base -= (1.0 - flatness) * (base - least_pressure(near, particles.pressure, i));
+    return corrected_gradient<Dim>(near, particles.position, particles.pressure, base, state.correction[self], n0, i);
+  }
+  if (flatness == 0.0) return pushing();
+  const Vector<Dim> normal = surface_normal<Dim>(near, state.asymmetry, particles.free_surface, i);
+  const std::optional<Vector<Dim>> even =
+      surface_gradient<Dim>(near, particles.position, particles.pressure, normal, settings_.particles.spacing, n0, i);
+  if (!even) return pushing();
+  return flatness < 1.0 ? flatness * *even + (1.0 - flatness) * pushing() : *even;
 }
 
 template <int Dim>

@@ -15,7 +15,8 @@
 namespace impinge {
 
 /// Makes the velocity u* of a step divergence-free: lap p = (1 - gamma) rho/dt div u* - gamma rho/dt^2 crowding (paper
-/// eq. 8), then u = u* - dt/rho grad p. Every function that is not const is collective.
+/// eq. 8), then u = u* - dt/rho grad p. Where particles move on by u after that, the divergence is what it will be
+/// then, div u - after (grad u):(grad u)^T. Every function that is not const is collective.
 template <int Dim>
 class Projection {
  public:
@@ -23,9 +24,9 @@ class Projection {
 
   /// What a step's sources depend on besides the particles.
   struct Step {
-    double dt;               ///< [s]
-    double reference_speed;  ///< lower bound of the speed at which density errors are corrected [m/s]
-    double max_speed;        ///< of the fluid [m/s]
+    double dt;     ///< [s]
+    double after;  ///< time that particles move with the new velocity from their places now [s]
+    double speed;  ///< that the rate at which density errors are corrected refers to [m/s]
   };
 
   /// Solves for the pressures of all particles. A solve that fails is repeated from zero with a new preconditioner;
@@ -60,11 +61,13 @@ class Projection {
  private:
   void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
   std::vector<double> sources(const Step& step, State<Dim>& state) const;
-  double crowding(const State<Dim>& state, int i) const;
+  double divergence_after(double time, const State<Dim>& state, int i) const;
+  std::vector<double> crowding(const State<Dim>& state) const;
+  void smooth(const State<Dim>& state, std::vector<double>& field) const;
   double surface_weight(const State<Dim>& state, int i, const PairRow& far) const;
   PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
   void share_pressure(State<Dim>& state) const;
-  double base_pressure(const State<Dim>& state, int i) const;
+  Vector<Dim> gradient(const State<Dim>& state, int i) const;
 
   const MethodSettings& settings_;
   LatticeSums near_sums_;    // of the number density's radius
