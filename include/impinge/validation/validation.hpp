@@ -28,8 +28,8 @@ struct Validation {
   SnapshotHeader last;  ///< of the last snapshot
   std::string last_path;
   std::vector<std::string> differences;  ///< what acts on the run and not on the analytic jet, with its strength
-  std::optional<TimeSpan> window;  ///< of the wall-pressure average
-  std::vector<double> times;       ///< of the compared snapshots [s]
+  std::optional<TimeSpan> window;        ///< of the wall-pressure average
+  std::vector<double> times;             ///< of the compared snapshots [s]
   JetMetrics metrics;
   /// Fluid particles in (those of the start included) minus out minus stored, by the history's last line; stored are
   /// those of the last snapshot where it is of the same step. 0 unless particles are lost or made. Empty without a
