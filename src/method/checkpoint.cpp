@@ -66,9 +66,8 @@ std::string problem_of(const Checkpoint<Dim>& state, int rank, int ranks, std::i
       !std::ranges::all_of(state.searched_position, is_finite))
     return "a position is not finite";
   if (!are_within(state.owner, 0, ranks - 1)) return "a cell's owner is no rank";
-  constexpr std::int64_t stencil = Dim == 2 ? 25 : 125;
   const CoarseRows& coarse = state.coarse;
-  if (!are_rows(coarse, stencil, first_node, nodes) ||
+  if (!are_rows(coarse, coarse_stencil<Dim>, first_node, nodes) ||
       !are_within(coarse.cell, 0, std::ranges::count(state.owner, rank) - 1) ||
       std::ranges::adjacent_find(coarse.cell, std::greater_equal{}) != coarse.cell.end())
     return "the coarse matrix is none";

@@ -1,5 +1,6 @@
 #include "impinge/method/costs.hpp"
 
+#include "impinge/method/density.hpp"
 #include "impinge/method/pressure/two_level.hpp"
 #include "impinge/parallel/decomposition.hpp"
 #include "impinge/particles/fields.hpp"
@@ -24,7 +25,7 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
   if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
   if (settings.pressure.packing) traffic += 2.0 * sizeof(double);
-  if (settings.free_surface.zero_outside || settings.shifting.coefficient > 0.0) traffic += sizeof(Vector<Dim>) + 1.0;
+  if (needs_asymmetry(settings)) traffic += sizeof(Vector<Dim>) + 1.0;
   if (settings.shifting.coefficient > 0.0 && settings.shifting.correct_velocity) traffic += sizeof(Vector<Dim>);
   return {.particle_memory = static_cast<double>(bytes_per_particle<Dim>()) + 2.0 * sizeof(int) +
                              sizeof(Vector<Dim>),  // with the cells' order

@@ -13,8 +13,7 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
   const bool walls_measure = settings.walls.model == WallModel::mirror;
   const PressureSettings& pressure = settings.pressure;
   const bool corrects = pressure.corrected_divergence || pressure.corrected_gradient;
-  const bool needs_asymmetry =
-      limits.zero_outside || settings.shifting.coefficient > 0.0 || pressure.corrected_gradient;
+  const bool needs_all_asymmetries = needs_asymmetry(settings);
   number_density(near, particles.number_density);
   state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);
   state.asymmetry.assign(particles.position.size(), {});
@@ -27,7 +26,7 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
     if (type != ParticleType::fluid && (type != ParticleType::wall || walls_measure)) continue;
     const double n = particles.number_density[self];
     const bool undecided = n >= limits.surface_density * n0 && n <= limits.interior_density * n0;
-    if (undecided || needs_asymmetry) state.asymmetry[self] = asymmetry<Dim>(near, particles.position, n0, i);
+    if (undecided || needs_all_asymmetries) state.asymmetry[self] = asymmetry<Dim>(near, particles.position, n0, i);
     if (corrects && type == ParticleType::fluid)
       state.correction[self] = moment_correction<Dim>(near, particles.position, n0, i);
     const bool surface = n < limits.surface_density * n0 ||
@@ -38,8 +37,8 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
     if (type == ParticleType::wall) state.asymmetry[self] = {};  // the free surface is the fluid's
   }
   state.decomposition.halo().refresh(state.role, particles.owned);
-  if (corrects || needs_asymmetry || pressure.packing) state.refresh(particles.free_surface);
-  if (needs_asymmetry) state.refresh_directions(state.asymmetry);
+  if (corrects || needs_all_asymmetries || pressure.packing) state.refresh(particles.free_surface);
+  if (needs_all_asymmetries) state.refresh_directions(state.asymmetry);
 }
 
 template void measure_density(const MethodSettings&, const LatticeSums&, State<2>&);

@@ -33,7 +33,7 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double visc
   for (std::size_t i = 0; i < change.size(); ++i) {
     if (!state.moves(i)) continue;
     particles.velocity[i] += change[i];
-    particles.position[i] -= rule.early * change[i];
+    particles.position[i] -= rule.after * change[i];
   }
 }
 

@@ -187,6 +187,18 @@ double least_pressure(const PairList& near, std::span<const double> pressure, in
   return least;
 }
 
+double mean_inside(const PairList& near, std::span<const double> value, std::span<const std::uint8_t> free_surface,
+                   double own_weight, int i) {
+  double weights = own_weight;
+  double sum = own_weight * value[static_cast<std::size_t>(i)];
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (free_surface[j]) return;
+    weights += weight;
+    sum += weight * value[j];
+  });
+  return sum / weights;
+}
+
 double weighted_mean(const PairList& near, std::span<const double> value, int i) {
   double weights = 0.0;
   double sum = 0.0;

@@ -28,7 +28,7 @@ State<Dim> make_state(MPI_Comm comm, const MethodSettings& settings, const Scene
                               far, settings.walls.model == WallModel::mirror);
   return {.particles = {},
           .decomposition = std::move(decomposition),
-          .walls = MirrorWalls<Dim>(scene.mirrors, std::max(near, far)),
+          .walls = MirrorWalls<Dim>(scene.mirrors, settings.kernel.largest() * settings.particles.spacing),
           .search = std::move(search),
           .wall_normal = {},
           .asymmetry = {},
@@ -267,13 +267,13 @@ template <int Dim>
 void Simulation<Dim>::correct(const MotionRule& rule, double speed) {
   const PhaseLog log(Phase::correct);
   Particles<Dim>& particles = state_.particles;
-  const std::vector<Vector<Dim>> change = projection_.velocity_change(report_.dt, state_);
+  const std::vector<Vector<Dim>> change = projection_.velocity_change(rule.dt, state_);
   for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
   const Shift<Dim> shift = shift_of(settings_.shifting, speed, rule.dt, settings_.particles.spacing,
                                     projection_.lattice().number_density, state_);
   advance(rule.after, scene_.inlets, particles);
   for (std::size_t i = 0; i < change.size(); ++i) {
-    particles.position[i] += rule.late * change[i] + shift.displacement[i];
+    particles.position[i] += (rule.before - rule.after) * change[i] + shift.displacement[i];
     particles.velocity[i] += shift.velocity_change[i];
   }
 }

@@ -75,8 +75,9 @@ double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymm
   Vector<Dim> sum;
   int count = 0;
   const auto add = [&](std::size_t j) {
+    if (!free_surface[j]) return;
     const double size = norm(asymmetry[j]);
-    if (!free_surface[j] || size == 0.0) return;
+    if (size == 0.0) return;
     sum += 1.0 / size * asymmetry[j];
     ++count;
   };

@@ -73,7 +73,7 @@ double energy_ratio(bool mean_velocity, double dt) {
     const Vector<2> change = -rule.dt * x;
     u += change;
     advance(rule.after, none, particles);
-    x += rule.late * change;
+    x += (rule.before - rule.after) * change;
     if (step * dt > 90.0) largest = std::max(largest, dot(x, x) + dot(u, u));
   }
   return largest;
@@ -93,7 +93,7 @@ TEST(MotionRule, OfTheMeanVelocityTakesAFallExactly) {
     double x = 0.0, u = 0.0;
     for (int step = 0; step < 10; ++step) {
       u += -10.0 * rule.dt;
-      x += rule.before * u - rule.early * -10.0 * rule.dt + rule.after * u;
+      x += rule.before * u - rule.after * -10.0 * rule.dt + rule.after * u;
     }
     EXPECT_NEAR(x, mean ? -5.0 : -5.5, 1e-12);
   }

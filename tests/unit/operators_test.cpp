@@ -471,6 +471,20 @@ TYPED_TEST(Operators, ThereIsNoSurfaceGradientWithoutNeighboursAround) {
   EXPECT_FALSE(surface_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, Vector<Dim>{}, 1.0, 4.0, 0));
 }
 
+TYPED_TEST(Operators, TheMeanInsideLeavesOutTheSurface) {
+  constexpr int Dim = TypeParam::value;
+  Group<Dim> group;  // of the values 1, 2, 3
+  group.add(0.0, 0.0, 0.0, 0.0);
+  group.add(0.8, 0.0, 0.0, 0.0);
+  group.add(0.0, 1.0, 0.0, 0.0);
+  std::vector<std::uint8_t> free_surface{0, 0, 1};
+  const double weight = NonSingularKernel::weight(0.8, near_radius);
+  const auto mean = [&] { return mean_inside(group.pairs(), group.pressure, free_surface, 2.0, 0); };
+  EXPECT_NEAR(mean(), (2.0 + 2.0 * weight) / (2.0 + weight), 1e-12);
+  free_surface[1] = 1;
+  EXPECT_EQ(mean(), 1.0);
+}
+
 TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   constexpr int Dim = TypeParam::value;
   Group<Dim> single;

@@ -9,6 +9,10 @@
 
 namespace impinge {
 
+/// Most entries of a row of the preconditioner's coarse matrix: the 5^Dim nodes around its own.
+template <int Dim>
+constexpr std::size_t coarse_stencil = Dim == 2 ? 25 : 125;
+
 /// This rank's rows of the preconditioner's coarse matrix.
 struct CoarseRows {
   std::vector<std::int64_t> cell;    ///< place of each row's cell among the cells of this rank

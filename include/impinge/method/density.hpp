@@ -15,6 +15,12 @@ bool is_spray(const Particles<Dim>& particles, double n0, std::size_t i) {
   return particles.number_density[i] < spray_density * n0;
 }
 
+/// True if something reads the asymmetries of a particle's neighbours.
+inline bool needs_asymmetry(const MethodSettings& settings) {
+  return settings.free_surface.zero_outside || settings.shifting.coefficient > 0.0 ||
+         settings.pressure.corrected_gradient;
+}
+
 /// Measures number density, free surface (Zhang & Wan 2012), asymmetry F_i, correction L_i and role of every particle
 /// with its neighbours. `lattice`: sums of the near radius. Collective.
 template <int Dim>

@@ -8,22 +8,18 @@
 
 namespace impinge {
 
-/// How a step moves particles. With the new velocity (paper): by dt u* before the pressure is known and by dt (u - u*)
-/// after it. With the mean velocity: by dt/2 u_old before and by dt/2 u_new after, so that the pressure acts in the
-/// middle of the step (position Verlet): second order in time, and it neither damps nor feeds an oscillation.
+/// How a step moves particles: for the time `before` until the pressure is known, then for `after`. A change of
+/// velocity in the step moves a particle by `before` times the change. With the new velocity (paper) before = dt: by dt
+/// u*, then by dt (u - u*). With the mean velocity both are dt/2: by dt/2 u_old, then by dt/2 u_new, so that the
+/// pressure acts in the middle of the step (position Verlet): second order in time, and it neither damps nor feeds an
+/// oscillation.
 struct MotionRule {
   double dt;      ///< [s]
-  double before;  ///< time that particles move before the pressure is known [s]
-  double after;   ///< likewise after it [s]
-  double late;    ///< time that the pressure's change of a velocity counts for, back from there [s]
-  double early;   ///< time before the pressure that the forces' change of a velocity does not count for [s]
+  double before;  ///< [s]
+  double after;   ///< [s]
 
   MotionRule(const TimeSettings& time, double dt_)
-      : dt(dt_),
-        before(time.mean_velocity ? 0.5 * dt_ : dt_),
-        after(dt_ - before),
-        late(time.mean_velocity ? 0.0 : dt_),
-        early(time.mean_velocity ? before : 0.0) {}
+      : dt(dt_), before(time.mean_velocity ? 0.5 * dt_ : dt_), after(dt_ - before) {}
 };
 
 /// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step. `laplacian_factor`: 2 Dim/(n0 lambda)

@@ -84,6 +84,11 @@ Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<D
                                   std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
                                   const Vector<Dim>& displacement, double n0, int i);
 
+/// Mean of the values of particle i and its neighbours that are not on the free surface, by their weights; particle i
+/// has `own_weight`.
+double mean_inside(const PairList& near, std::span<const double> value, std::span<const std::uint8_t> free_surface,
+                   double own_weight, int i);
+
 /// Mean of the neighbours' values by their weights; 0 without a neighbour.
 double weighted_mean(const PairList& near, std::span<const double> value, int i);
 

@@ -130,24 +130,13 @@ std::vector<double> Projection<Dim>::crowding(const State<Dim>& state) const {
 template <int Dim>
 void Projection<Dim>::smooth(const State<Dim>& state, std::vector<double>& field) const {
   const std::vector<std::uint8_t>& free_surface = state.particles.free_surface;
-  const PairList& near = state.near();
   const double own_weight = 2.0 * with_kernel(settings_.kernel.type, [&](auto kernel) {
                               return decltype(kernel)::weight(1.0, settings_.kernel.radius);
                             });
   state.refresh(field);
   std::vector<double> mean = field;
-  for (std::size_t i = 0; i < state.owned(); ++i) {
-    if (free_surface[i]) continue;
-    double weights = own_weight;
-    double sum = own_weight * field[i];
-    for (int k = near.begin(static_cast<int>(i)); k < near.end(static_cast<int>(i)); ++k) {
-      const auto j = static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]);
-      if (free_surface[j]) continue;
-      weights += near.weight[static_cast<std::size_t>(k)];
-      sum += near.weight[static_cast<std::size_t>(k)] * field[j];
-    }
-    mean[i] = sum / weights;
-  }
+  for (std::size_t i = 0; i < state.owned(); ++i)
+    if (!free_surface[i]) mean[i] = mean_inside(state.near(), field, free_surface, own_weight, static_cast<int>(i));
   field = std::move(mean);
 }
 

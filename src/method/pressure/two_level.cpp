@@ -208,7 +208,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
   // patch by patch P^T (B P) on the same nodes; then on the 5^Dim around each node.
   constexpr std::size_t n_cubes = power(3, Dim);
   constexpr std::size_t near_size = power(4, Dim);
-  constexpr std::size_t stencil_size = power(5, Dim);
+  constexpr std::size_t stencil_size = coarse_stencil<Dim>;
   std::array<std::array<std::size_t, corners>, n_cubes> node_of_cube;
   std::array<std::size_t, corners> corner_in_stencil;
   for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
