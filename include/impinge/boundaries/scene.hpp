@@ -7,6 +7,7 @@
 
 #include "impinge/boundaries/inlet.hpp"
 #include "impinge/boundaries/mirror_walls.hpp"
+#include "impinge/boundaries/wall.hpp"
 
 namespace impinge {
 
@@ -15,8 +16,10 @@ struct Scene {
   Box<Dim> bounds;                   ///< the region that particles may occupy [m]
   std::array<bool, Dim> periodic{};  ///< axes along which the bounds repeat
 
-  std::vector<Face<Dim>> mirrors;  ///< walls by images; empty where walls are particles
-  std::vector<Inlet<Dim>> inlets;  ///< as they stand at the start
+  std::vector<Face<Dim>> mirrors;      ///< walls by images; empty where walls are particles
+  std::vector<Wall> walls;             ///< likewise, of finite size; in two dimensions
+  std::vector<WallPoint> wall_points;  ///< of these walls; the wall particle with the id k stands on point k
+  std::vector<Inlet<Dim>> inlets;      ///< as they stand at the start
   std::vector<Outlet<Dim>> outlets;
   std::int64_t next_id = 0;  ///< of the first particle that enters
 
