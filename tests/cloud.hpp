@@ -24,7 +24,7 @@ std::array<bool, Dim> periodic_axes(Edge edge) {
 
 /// Mirrors on all sides of a box, if its edges are some.
 template <int Dim>
-MirrorWalls<Dim> mirrors_of(Edge edge, const Box<Dim>& box, double reach) {
+MirrorWalls<Dim> mirrors_of(Edge edge, const Box<Dim>& box, double reach, double spacing = 1.0) {
   std::vector<Face<Dim>> faces;
   for (int k = 0; k < Dim && edge == Edge::mirror; ++k) {
     Face<Dim> low{box.low, {}}, high{box.high, {}};
@@ -32,7 +32,7 @@ MirrorWalls<Dim> mirrors_of(Edge edge, const Box<Dim>& box, double reach) {
     high.normal[k] = -1.0;
     faces.insert(faces.end(), {low, high});
   }
-  return {faces, reach};
+  return {faces, {}, {}, reach, spacing};
 }
 
 /// A lattice of spacing 1 in the box [0, extent), each particle displaced by up to `jitter` along every axis; velocity

@@ -6,95 +6,268 @@
 namespace impinge {
 namespace {
 
-constexpr double right_angle = 1e-9;  // largest product of the normals of two faces that meet at a right angle
-constexpr double least_gap = 1e-9;    // between a particle and a face after a reflection [dp]
-constexpr double rounding = 1e-15;    // of a position, over its distance from the origin
+constexpr double right_angle = 1e-9;   // largest product of the normals of two faces that meet at a right angle
+constexpr double displacement = 1e-10;  // of a particle's own image, so that its line misses the edge it aims at [dp]
+constexpr double least_share = 0.5;    // of a pair at an arc
+constexpr double most_share = 2.0;
 
-// The reflection at a face, then the other.
 template <int Dim>
-Reflection<Dim> product(const Reflection<Dim>& outer, const Face<Dim>& face, int number) {
-  Reflection<Dim> single;
-  for (int k = 0; k < Dim; ++k) single.linear.row[static_cast<std::size_t>(k)] -= 2.0 * face.normal[k] * face.normal;
-  single.shift = 2.0 * dot(face.point, face.normal) * face.normal;
-  Reflection<Dim> result;
-  for (int r = 0; r < Dim; ++r) {
-    Vector<Dim>& row = result.linear.row[static_cast<std::size_t>(r)];
-    row = {};
-    for (int k = 0; k < Dim; ++k)
-      row += outer.linear.row[static_cast<std::size_t>(r)][k] * single.linear.row[static_cast<std::size_t>(k)];
+bool are_perpendicular(const WallFaces<Dim>& faces, int one, int two) {
+  if (!faces.is_flat(one) || !faces.is_flat(two)) return false;
+  return std::abs(dot(faces.plane(one).normal, faces.plane(two).normal)) < right_angle;
+}
+
+/// The paths that differ in the order of faces at right angles: all have the same image.
+template <int Dim>
+std::vector<MirrorPath> same_paths(const WallFaces<Dim>& faces, const MirrorPath& path) {
+  std::vector<MirrorPath> all{path};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (int place = 0; place + 1 < path.count; ++place) {
+      MirrorPath other = all[k];
+      int &one = other.face[static_cast<std::size_t>(place)], &two = other.face[static_cast<std::size_t>(place) + 1];
+      if (!are_perpendicular(faces, one, two)) continue;
+      std::swap(one, two);
+      if (std::ranges::find(all, other) == all.end()) all.push_back(other);
+    }
   }
-  result.shift = outer.linear * single.shift + outer.shift;
-  result.parity = -outer.parity;
-  result.faces = outer.faces;
-  result.faces.push_back(number);
-  return result;
+  return all;
 }
 
 }  // namespace
 
 template <int Dim>
-MirrorWalls<Dim>::MirrorWalls(std::vector<Face<Dim>> faces, double reach) : faces_(std::move(faces)), reach_(reach) {
-  // Sets of faces that stand at right angles to each other, each set once.
-  std::vector<Reflection<Dim>> open{{}};
-  while (!open.empty()) {
-    const Reflection<Dim> outer = open.back();
-    open.pop_back();
-    const int first = outer.faces.empty() ? 0 : outer.faces.back() + 1;
-    for (int number = first; number < static_cast<int>(faces_.size()); ++number) {
-      const Face<Dim>& face = faces_[static_cast<std::size_t>(number)];
-      const bool meets = std::ranges::all_of(outer.faces, [&](int other) {
-        return std::abs(dot(face.normal, faces_[static_cast<std::size_t>(other)].normal)) < right_angle;
-      });
-      if (!meets) continue;
-      open.push_back(product(outer, face, number));
-      reflections_.push_back(open.back());
+void MirrorWalls<Dim>::confine(const std::function<Vector<Dim>(int)>& before, Particles<Dim>& particles) const {
+  if (empty()) return;
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (particles.type[self] == ParticleType::fluid)
+      faces_.confine(before(i), particles.position[self], particles.velocity[self]);
+  }
+}
+
+// The images of one particle along all paths that end with this one; `place` and `outer`: its image along this one.
+template <int Dim>
+void MirrorWalls<Dim>::append_paths(int particle, const Vector<Dim>& place, const MirrorPath& path,
+                                    const Reflection<Dim>& outer) {
+  if (path.count == MirrorPath::longest) return;
+  const Vector<Dim> origin = position_[static_cast<std::size_t>(particle)];
+  for (const int f : faces_.around(origin)) {
+    if (!faces_.is_flat(f)) continue;
+    const bool ends = faces_.has_ends(f);
+    if (ends ? !(faces_.height(f, place) > 0.0 && faces_.distance(f, place) < reach_)
+             : !(faces_.height(f, place) < reach_))
+      continue;
+    if (path.count > 0) {
+      const int last = path.face[0];
+      if (f == last || faces_.is_partner(f, last)) continue;
+      const bool perpendicular = are_perpendicular(faces_, f, last);
+      if (perpendicular ? f < last : !ends) continue;
     }
+    MirrorPath longer;
+    longer = longer.then(f);
+    for (const int g : path.faces()) longer = longer.then(g);
+    const Reflection<Dim> whole = product(reflection_at(faces_.plane(f)), outer);
+    original_.push_back(particle);
+    way_.push_back(way_of(longer, whole));
+    append_paths(particle, whole.of_position(origin), longer, whole);
   }
 }
 
 template <int Dim>
-void MirrorWalls<Dim>::confine(Particles<Dim>& particles, double spacing) const {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    if (particles.type[i] != ParticleType::fluid) continue;
-    for (const Face<Dim>& face : faces_) {
-      const double depth = -face.distance(particles.position[i]);
-      if (!(depth >= 0.0)) continue;
-      const double gap = std::max(least_gap * spacing, rounding * norm(particles.position[i]));
-      particles.position[i] += 2.0 * std::max(depth, 0.5 * (depth + gap)) * face.normal;
-      if (depth > 0.0) particles.velocity[i] -= 2.0 * dot(particles.velocity[i], face.normal) * face.normal;
-    }
-  }
+int MirrorWalls<Dim>::way_of(const MirrorPath& path, const Reflection<Dim>& whole) {
+  const auto found = known_.find(path);
+  if (found != known_.end()) return found->second;
+  const auto moves = [&](int f) { return faces_.moves(f); };
+  const auto holds = [&](int f) { return !faces_.slips(f); };
+  const bool all_hold = std::ranges::all_of(path.faces(), holds);
+  ways_.push_back({path, whole, std::ranges::any_of(path.faces(), moves), all_hold});
+  const int number = static_cast<int>(ways_.size()) - 1;
+  known_.emplace(path, number);
+  return number;
 }
 
 template <int Dim>
 void MirrorWalls<Dim>::append_images(Particles<Dim>& particles) {
   first_image_ = particles.size();
   original_.clear();
-  reflection_.clear();
-  if (faces_.empty()) return;
-  std::vector<double> distance(faces_.size());
-  for (int i = 0; i < first_image_; ++i) {
-    const auto self = static_cast<std::size_t>(i);
-    if (particles.type[self] == ParticleType::wall) continue;
-    bool near = false;
-    for (std::size_t f = 0; f < faces_.size(); ++f) {
-      distance[f] = faces_[f].distance(particles.position[self]);
-      near |= distance[f] < reach_;
-    }
-    if (!near) continue;
-    for (std::size_t r = 0; r < reflections_.size(); ++r) {
-      const auto within = [&](int face) { return distance[static_cast<std::size_t>(face)] < reach_; };
-      if (!std::ranges::all_of(reflections_[r].faces, within)) continue;
-      original_.push_back(i);
-      reflection_.push_back(static_cast<int>(r));
-    }
-  }
-  particles.resize(first_image_ + static_cast<int>(original_.size()));
+  way_.clear();
+  ways_.clear();
+  known_.clear();
+  own_start_.clear();
+  own_.clear();
+  tested_.assign(static_cast<std::size_t>(particles.owned), 0);
+  first_own_image_ = first_image_;
+  if (empty()) return;
+  position_ = particles.position;
+  for (int i = 0; i < first_image_; ++i)
+    if (particles.type[static_cast<std::size_t>(i)] != ParticleType::wall)
+      append_paths(i, position_[static_cast<std::size_t>(i)], {}, {});
+  first_own_image_ = first_image_ + static_cast<int>(original_.size());
+  particles.resize(first_own_image_);
   for_images([&](std::size_t, std::size_t at, std::size_t from) {
     particles.set_record(static_cast<int>(at), particles.record(static_cast<int>(from)));
   });
   copy_positions(particles.position);
-  copy_directions(particles.velocity);
+  copy_velocities(particles.position, particles.velocity);
+  position_ = particles.position;
+  id_ = particles.id;
+  for (std::size_t i = 0; i < tested_.size(); ++i) tested_[i] = faces_.has_tests(particles.position[i]) ? 1 : 0;
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::append_own_images(const std::function<std::span<const int>(int)>& around,
+                                         Particles<Dim>& particles) {
+  if constexpr (Dim == 2) {
+    if (!faces_.has_arcs()) return;
+    own_start_.assign(1, 0);
+    for (int i = 0; i < particles.owned; ++i) {
+      const auto self = static_cast<std::size_t>(i);
+      const Vector<2>& here = particles.position[self];
+      for (const int f : faces_.around(here)) {
+        const ParticleType type = particles.type[self];
+        if (type != ParticleType::fluid && type != ParticleType::wall) break;
+        const double height = faces_.height(f, here);
+        if (faces_.is_flat(f) || !(height > 0.0) || faces_.distance(f, here) >= reach_) continue;
+        for (const int j : around(i)) {
+          if (j >= first_image_ || particles.type[static_cast<std::size_t>(j)] == ParticleType::wall) continue;
+          const Vector<2>& there = particles.position[static_cast<std::size_t>(j)];
+          const double other_height = faces_.height(f, there);
+          if (!(other_height > 0.0)) continue;
+          const Face<2> plane =
+              faces_.tangent_plane(f, 1.0 / (height + other_height) * (other_height * here + height * there));
+          const Reflection<2> reflection = reflection_at(plane);
+          const Vector<2> image = reflection.of_position(there);
+          const double length = norm(image - here);
+          if (length >= reach_) continue;
+          const MirrorPath path = MirrorPath{}.then(f);
+          double share = faces_.ray_share(f, plane, here, there, length);
+          share = std::clamp(share, least_share, most_share);
+          if (tested_[self]) {
+            share *= particles.id[self] <= particles.id[static_cast<std::size_t>(j)]
+                         ? faces_.path_factor(here, image, path, plane)
+                         : faces_.path_factor(there, reflection.of_position(here), path, plane);
+          } else if (!faces_.holds(f, plane.point)) {
+            share = 0.0;
+          }
+          if (share == 0.0) continue;
+          own_.push_back({first_image_ + static_cast<int>(original_.size()), share});
+          original_.push_back(j);
+          way_.push_back(static_cast<int>(ways_.size()));
+          ways_.push_back({path, reflection, faces_.moves(f), !faces_.slips(f)});
+        }
+      }
+      own_start_.push_back(static_cast<int>(own_.size()));
+    }
+    particles.resize(first_image_ + static_cast<int>(original_.size()));
+    for_images([&](std::size_t k, std::size_t at, std::size_t from) {
+      if (static_cast<int>(at) < first_own_image_) return;
+      particles.set_record(static_cast<int>(at), particles.record(static_cast<int>(from)));
+      particles.position[at] = reflection(k).of_position(particles.position[from]);
+      particles.velocity[at] = velocity_of(k, particles.position[from], particles.velocity[from]);
+    });
+    position_ = particles.position;
+    id_ = particles.id;
+  }
+}
+
+// Calls use(face, its reflection, place before, place behind) for the faces on the way from an image's original.
+template <int Dim>
+template <class Use>
+void MirrorWalls<Dim>::along(std::size_t image, const Vector<Dim>& from, Use&& use) const {
+  const Way& here = way(image);
+  Vector<Dim> place = from;
+  for (int k = here.path.count; k-- > 0;) {
+    const int f = here.path.face[static_cast<std::size_t>(k)];
+    const Reflection<Dim> single = here.path.count == 1 ? here.whole : reflection_at(faces_.plane(f));
+    const Vector<Dim> next = single.of_position(place);
+    use(f, single, place, next);
+    place = next;
+  }
+}
+
+template <int Dim>
+Vector<Dim> MirrorWalls<Dim>::velocity_of(std::size_t image, const Vector<Dim>& from,
+                                          const Vector<Dim>& velocity) const {
+  if (!way(image).moves) return reflection(image).linear * velocity;
+  Vector<Dim> result = velocity;
+  along(image, from, [&](int f, const Reflection<Dim>& single, const Vector<Dim>& before, const Vector<Dim>& behind) {
+    result = faces_.velocity(f, behind) + single.linear * (result - faces_.velocity(f, before));
+  });
+  return result;
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::copy_velocities(const std::vector<Vector<Dim>>& position,
+                                       std::vector<Vector<Dim>>& velocity) const {
+  for_images([&](std::size_t k, std::size_t at, std::size_t from) {
+    velocity[at] = velocity_of(k, position[from], velocity[from]);
+  });
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::copy_held_velocities(const std::vector<Vector<Dim>>& position,
+                                            std::vector<Vector<Dim>>& velocity) const {
+  for_images([&](std::size_t k, std::size_t at, std::size_t from) {
+    if (way(k).holds && !way(k).moves) {
+      velocity[at] = way(k).path.count % 2 == 0 ? velocity[from] : -1.0 * velocity[from];
+      return;
+    }
+    Vector<Dim> result = velocity[from];
+    along(k, position[from],
+          [&](int f, const Reflection<Dim>& single, const Vector<Dim>& before, const Vector<Dim>& behind) {
+            const Vector<Dim> relative = result - faces_.velocity(f, before);
+            result = faces_.velocity(f, behind) + (faces_.slips(f) ? single.linear * relative : -1.0 * relative);
+          });
+    velocity[at] = result;
+  });
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::apply_force(double dt, double density,
+                                   const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
+                                   Particles<Dim>& particles, std::vector<double>& offset) const {
+  offset.resize(count());
+  for_images([&](std::size_t k, std::size_t at, std::size_t from) {
+    double excess = 0.0;
+    Vector<Dim> change;
+    along(k, particles.position[from],
+          [&](int f, const Reflection<Dim>& single, const Vector<Dim>& before, const Vector<Dim>& behind) {
+            const Vector<Dim> middle = before + 0.5 * (behind - before);
+            const Vector<Dim> excess_force = force(middle) - faces_.acceleration(f, middle);
+            excess += dot(excess_force, behind - before);
+            change = single.linear * change + excess_force - single.linear * excess_force;
+          });
+    offset[k] = density * excess;
+    particles.velocity[at] += dt * change;
+  });
+}
+
+template <int Dim>
+double MirrorWalls<Dim>::factor(int i, int j) const {
+  const auto self = static_cast<std::size_t>(i), other = static_cast<std::size_t>(j);
+  const Vector<Dim>& here = position_[self];
+  if (j < first_image_)
+    return id_[self] <= id_[other] ? faces_.line_factor(here, position_[other])
+                                   : faces_.line_factor(position_[other], here);
+  const std::size_t image = other - static_cast<std::size_t>(first_image_);
+  const auto original = static_cast<std::size_t>(original_[image]);
+  const Way& to = way(image);
+  Vector<Dim> begin = here, end = position_[other];
+  const bool backwards = id_[self] > id_[original];
+  if (backwards) {
+    begin = position_[original];
+    end = {};
+    const Vector<Dim> offset = here - to.whole.shift;
+    for (int k = 0; k < Dim; ++k) end += offset[k] * to.whole.linear.row[static_cast<std::size_t>(k)];
+  } else if (static_cast<std::size_t>(i) == original && to.path.count > 1) {
+    end[0] += 0.6 * displacement * spacing_;
+    end[1] += 0.8 * displacement * spacing_;
+  }
+  if (to.path.count == 1) return faces_.path_factor(begin, end, to.path, {});
+  double sum = 0.0;
+  for (const MirrorPath& path : same_paths(faces_, to.path))
+    sum += faces_.path_factor(begin, end, backwards ? path.reversed() : path, {});
+  return std::min(sum, 1.0);
 }
 
 template class MirrorWalls<2>;

@@ -3,19 +3,6 @@
 #include "impinge/method/operators.hpp"
 
 namespace impinge {
-namespace {
-
-// A viscous fluid does not slip: its images move against it; those of two mirrors, in a corner, with it.
-template <int Dim>
-void hold_images(State<Dim>& state) {
-  std::vector<Vector<Dim>>& velocity = state.particles.velocity;
-  state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
-    velocity[at] = state.walls.reflection(image).parity * velocity[from];
-  });
-}
-
-}  // namespace
-
 template <int Dim>
 void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double viscosity, double laplacian_factor,
                 State<Dim>& state) {
@@ -24,7 +11,7 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double visc
   for (std::size_t i = 0; i < change.size(); ++i) change[i] = rule.dt * force.at(particles.position[i]);
   if (viscosity > 0.0) {
     state.decomposition.halo().refresh(particles.velocity, particles.owned);
-    hold_images(state);
+    state.walls.copy_held_velocities(particles.position, particles.velocity);
     state.search.for_far_rows([&](int i, const PairRow& row) {
       change[static_cast<std::size_t>(i)] +=
           viscosity * rule.dt * velocity_laplacian<Dim>(row, particles.velocity, laplacian_factor, i);
@@ -42,7 +29,7 @@ void collide(const CollisionSettings& settings, double spacing, double dt, State
   if (settings.distance == 0.0) return;
   Particles<Dim>& particles = state.particles;
   state.refresh_positions();
-  state.refresh_directions(particles.velocity);
+  state.refresh_velocities();
   const double distance = settings.distance * spacing;
   std::vector<Vector<Dim>> change(state.owned());
   for (std::size_t i = 0; i < change.size(); ++i)

@@ -50,6 +50,23 @@ double packing(const PairList& near, KernelType kernel, int i) {
 }
 
 template <int Dim>
+double packing(const PairList& near, std::span<const Vector<Dim>> position, KernelType kernel, double radius,
+               int first_scaled, int i) {
+  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
+  return with_kernel(kernel, [&]<class Kernel>(Kernel) {
+    double sum = 0.0;
+    for_pairs(near, i, [&](std::size_t j, double weight) {
+      if (static_cast<int>(j) < first_scaled) {
+        sum += packing_weight<Kernel>(weight);
+      } else if (const double own = Kernel::weight(norm(position[j] - centre), radius); own > 0.0) {
+        sum += weight / own * packing_weight<Kernel>(own);
+      }
+    });
+    return sum;
+  });
+}
+
+template <int Dim>
 Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i) {
   const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
   Vector<Dim> sum;
@@ -142,7 +159,6 @@ Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<D
   const Vector<Dim> own = velocity[self];
   Matrix<Dim> moment;
   Matrix<Dim> slope;
-  Vector<Dim> least, most;
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
     const Vector<Dim> offset = position[j] - centre;
@@ -150,14 +166,16 @@ Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<D
     const Vector<Dim> relative = velocity[j] - own;
     moment.add_product(weighted, offset);
     slope.add_product(relative, weighted);
-    for (int k = 0; k < Dim; ++k) {
-      least[k] = std::min(least[k], relative[k]);
-      most[k] = std::max(most[k], relative[k]);
-    }
   });
-  Vector<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
-  for (int k = 0; k < Dim; ++k) change[k] = std::clamp(change[k], least[k], most[k]);
-  return change;
+  const Vector<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
+  const double size = norm(change);
+  if (size == 0.0) return change;
+  double most = 0.0;
+  for_pairs(near, i, [&](std::size_t j, double) {
+    if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
+    most = std::max(most, dot(velocity[j] - own, change) / size);
+  });
+  return most < size ? most / size * change : change;
 }
 
 template <int Dim>
@@ -257,6 +275,7 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
 }
 
 #define IMPINGE_INSTANTIATE(Dim)                                                                                       \
+  template double packing<Dim>(const PairList&, std::span<const Vector<Dim>>, KernelType, double, int, int);           \
   template Vector<Dim> asymmetry<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);                     \
   template Matrix<Dim> moment_correction<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);             \
   template double divergence<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>, double, \

@@ -16,7 +16,7 @@ Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, d
   const double scale = shifting.coefficient * speed * dt;
   if (scale == 0.0) return shift;
   const double largest = largest_shift * spacing;
-  if (shifting.correct_velocity) state.refresh_directions(particles.velocity);
+  if (shifting.correct_velocity) state.refresh_velocities();
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (!state.moves(self) || is_spray(particles, n0, self)) continue;

@@ -28,7 +28,8 @@ State<Dim> make_state(MPI_Comm comm, const MethodSettings& settings, const Scene
                               far, settings.walls.model == WallModel::mirror);
   return {.particles = {},
           .decomposition = std::move(decomposition),
-          .walls = MirrorWalls<Dim>(scene.mirrors, settings.kernel.largest() * settings.particles.spacing),
+          .walls = MirrorWalls<Dim>(scene.mirrors, scene.walls, scene.motions,
+                                    settings.kernel.largest() * settings.particles.spacing, settings.particles.spacing),
           .search = std::move(search),
           .wall_normal = {},
           .asymmetry = {},
@@ -51,6 +52,7 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const MethodSettings& settings, Scene
     return;
   }
   scene_.fill(rank_of(comm), ranks_of(comm), state_.particles);
+  place_wall_points(0.0);
   state_.decomposition.partition(state_.particles);
   redistribute();
   find_neighbours();
@@ -83,6 +85,7 @@ void Simulation<Dim>::try_step(double target) {
   const double end = report_.dt == target - report_.time ? target : report_.time + report_.dt;
   const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
+  const double flow_speed = this->flow_speed();
   // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
   const double fall_speed = std::sqrt(acceleration * spacing);
   {
@@ -91,12 +94,14 @@ void Simulation<Dim>::try_step(double target) {
     collide(settings_.collision, spacing, report_.dt, state_);
     advance(rule.before, scene_.inlets, state_.particles);
   }
+  move_walls(report_.time + rule.before, end);
   pass_boundaries();
   redistribute();
   find_neighbours();
-  solve_pressure(rule, force, std::max(report_.max_speed, 3.0 * fall_speed));
-  correct(rule, std::max(report_.max_speed, fall_speed));
+  solve_pressure(rule, force, std::max(flow_speed, 3.0 * fall_speed));
+  correct(rule, std::max(flow_speed, fall_speed));
   report_.time = end;
+  place_wall_points(end);
   measure_totals();
 }
 
@@ -104,7 +109,7 @@ void Simulation<Dim>::try_step(double target) {
 template <int Dim>
 template <class Use>
 void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, std::vector<Inlet<Dim>>& inlets,
-                                  std::int64_t& next_id, Use&& use) {
+                                  std::int64_t& next_id, WallTimes& wall_times, Use&& use) {
   use("step", report.step);
   use("time", report.time);
   use("dt", report.dt);
@@ -123,6 +128,9 @@ void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, s
   use("window_begin", window.begin);
   use("window_end", window.end);
   use("next_id", next_id);
+  use("wall_time", wall_times.place);
+  use("wall_velocity_time", wall_times.velocity);
+  use("wall_speed", report.wall_speed);
   for (std::size_t k = 0; k < inlets.size(); ++k) use(fmt::format("inlet_{}_last_row", k + 1), inlets[k].last_row);
 }
 
@@ -132,13 +140,17 @@ void Simulation<Dim>::save(Checkpoint<Dim>& state) const {
   state.particles.copy_owned(particles);
   state.searched_position.assign(state.particles.position.begin(), state.particles.position.end());
   for (std::size_t i = 0; i < state_.owned(); ++i)
-    if (particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::inlet)
+    if (particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::inlet) {
       state.searched_position[i] = state_.search.searched_position(static_cast<int>(i));
+    } else if (is_wall_point(i)) {
+      state.searched_position[i] = wall_point_at(particles.id[i], wall_times_.place);
+    }
   StepReport report = report_;
   AveragingWindow window = window_;
   std::vector<Inlet<Dim>> inlets = scene_.inlets;
   std::int64_t next_id = scene_.next_id;
-  for_numbers(report, window, inlets, next_id,
+  WallTimes wall_times = wall_times_;
+  for_numbers(report, window, inlets, next_id, wall_times,
               [&](const std::string& name, auto number) { state.numbers[name] = static_cast<double>(number); });
 }
 
@@ -165,7 +177,7 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
     if (found == state.numbers.end()) throw FileError(fmt::format("the checkpoint has no {}", name));
     return found->second;
   };
-  for_numbers(report_, window_, scene_.inlets, scene_.next_id,
+  for_numbers(report_, window_, scene_.inlets, scene_.next_id, wall_times_,
               [&]<class T>(const std::string& name, T& target) { target = static_cast<T>(number(name)); });
 
   Decomposition<Dim>& decomposition = state_.decomposition;
@@ -182,6 +194,7 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
   }
   if (!std::ranges::all_of(scene_.inlets, &Inlet<Dim>::is_in_place))
     throw FileError("the checkpoint's inlet is elsewhere");
+  state_.walls.move_to(wall_times_.place, wall_times_.velocity);
   // The positions at the end of the step go the particles' way in the place of velocities.
   Particles<Dim> later = particles;
   later.velocity = state.particles.position;
@@ -206,12 +219,60 @@ void Simulation<Dim>::pass_boundaries() {
   const PhaseLog log(Phase::redistribute);
   Particles<Dim>& particles = state_.particles;
   particles.resize(particles.owned);
+  state_.walls.confine([&](int i) { return state_.search.searched_position(i); }, particles);
   const BoundaryFlow flow =
       pass_open_boundaries<Dim>(scene_.inlets, scene_.outlets, scene_.next_id, particles,
                                 [&](const Vector<Dim>& position) { return state_.decomposition.owns(position); });
   report_.in += sum_over_ranks(comm_, flow.entered);
   report_.out += sum_over_ranks(comm_, flow.left);
-  state_.walls.confine(particles, settings_.particles.spacing);
+}
+
+// Before particles are told to stay on their side.
+template <int Dim>
+void Simulation<Dim>::move_walls(double time, double velocity_time) {
+  if (!state_.walls.any_moves()) return;
+  wall_times_ = {time, velocity_time};
+  state_.walls.move_to(time, velocity_time);
+  place_wall_points(time);
+}
+
+template <int Dim>
+Vector<Dim> Simulation<Dim>::wall_point_at(std::int64_t id, double time) const {
+  const WallPoint& point = scene_.wall_points[static_cast<std::size_t>(id)];
+  const int motion = scene_.walls[static_cast<std::size_t>(point.wall)].motion;
+  Vector<Dim> position;
+  for (int k = 0; k < 2; ++k) position[k] = point.position[k];
+  return motion < 0 ? position : scene_.motions[static_cast<std::size_t>(motion)](time).of_position(position);
+}
+
+// Wall particles of walls that move to where these are at a time.
+template <int Dim>
+void Simulation<Dim>::place_wall_points(double time) {
+  if (scene_.motions.empty()) return;
+  for (std::size_t i = 0; i < state_.owned(); ++i)
+    if (is_wall_point(i)) state_.particles.position[i] = wall_point_at(state_.particles.id[i], time);
+  report_.wall_speed = 0.0;
+  for (std::size_t k = 0; k < scene_.wall_points.size(); ++k) {
+    const int motion = scene_.walls[static_cast<std::size_t>(scene_.wall_points[k].wall)].motion;
+    if (motion < 0) continue;
+    const Pose<Dim> pose = scene_.motions[static_cast<std::size_t>(motion)](time);
+    const Vector<Dim> place = wall_point_at(static_cast<std::int64_t>(k), time);
+    report_.wall_speed = std::max(report_.wall_speed, norm(pose.velocity_at(place)));
+  }
+}
+
+// The largest speed of the fluid relative to the walls, where these move as one body: a tank at constant velocity is
+// one at rest. Collective.
+template <int Dim>
+double Simulation<Dim>::flow_speed() const {
+  const int motion = state_.walls.faces().common_motion();
+  if (motion < 0) return report_.max_speed;
+  const Pose<Dim> pose = scene_.motions[static_cast<std::size_t>(motion)](report_.time);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < state_.owned(); ++i)
+    if (state_.moves(i))
+      largest = std::max(largest, norm(state_.particles.velocity[i] - pose.velocity_at(state_.particles.position[i])));
+  return max_over_ranks(comm_, largest);
 }
 
 template <int Dim>
@@ -242,14 +303,21 @@ void Simulation<Dim>::migrate() {
   state_.walls.append_images(particles);
   state_.wall_normal.assign(particles.position.size(), {});
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (particles.type[i] == ParticleType::wall) state_.wall_normal[i] = scene_.wall_normal(particles.position[i]);
+    if (particles.type[i] == ParticleType::wall && scene_.walls.empty())
+      state_.wall_normal[i] = scene_.wall_normal(particles.position[i]);
 }
 
 template <int Dim>
 void Simulation<Dim>::find_neighbours() {
+  Particles<Dim>& particles = state_.particles;
   {
     const PhaseLog log(Phase::neighbours);
-    state_.search.search(state_.particles);
+    NeighbourSearch<Dim>& search = state_.search;
+    search.arrange(particles);
+    state_.walls.append_own_images(
+        [&](int i) { return search.around(i, particles.position[static_cast<std::size_t>(i)]); }, particles);
+    search.find(particles, scene_.walls.empty() ? nullptr : &state_.walls);
+    state_.wall_normal.resize(particles.position.size());
   }
   const PhaseLog log(Phase::density);
   measure_density(settings_, projection_.lattice(), state_);

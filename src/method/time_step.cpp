@@ -21,7 +21,7 @@ void choose_time_step(const TimeSettings& time, double spacing, double accelerat
                       StepReport& report) {
   constexpr double first_courant = 0.05;
   constexpr double most_growth = 1.1;
-  const double largest = time.cfl * spacing / report.max_speed;  // infinite at rest
+  const double largest = time.cfl * spacing / std::max(report.max_speed, report.wall_speed);  // infinite at rest
   const double grown = report.free_dt > 0.0 ? most_growth * report.free_dt : first_courant / time.cfl * largest;
   const double fallen = time.cfl * std::sqrt(spacing / acceleration);  // infinite without a force
   const double free = std::min({time.dt, largest, fallen, grown});

@@ -67,14 +67,17 @@ NeighbourSearch<Dim>::NeighbourSearch(const CellGrid<Dim>& cells, int reach, Ker
 }
 
 template <int Dim>
-void NeighbourSearch<Dim>::search(const Particles<Dim>& particles) {
-  type_.assign(particles.type.begin(), particles.type.begin() + particles.owned);
-  arrange(particles);
+void NeighbourSearch<Dim>::find(const Particles<Dim>& particles, const PairFilter<Dim>* filter) {
+  filter_ = filter;
+  tested_start_.clear();
+  own_square_.clear();
+  if (filter) find_tested(particles);
   find_near(particles);
 }
 
 template <int Dim>
 void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
+  type_.assign(particles.type.begin(), particles.type.begin() + particles.owned);
   const auto n = static_cast<std::size_t>(particles.size());
   std::array<int, Dim> low{}, high{};
   std::vector<std::array<int, Dim>> at(n);
@@ -173,6 +176,90 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
   return used;
 }
 
+template <int Dim>
+std::span<const int> NeighbourSearch<Dim>::around(int i, const Vector<Dim>& position) {
+  const std::size_t count = append_within(std::max(near_radius_, far_radius_), -1.0, i, position, 0);
+  return {index_.data(), count};
+}
+
+// Asks the filter once for what both radii need.
+template <int Dim>
+void NeighbourSearch<Dim>::find_tested(const Particles<Dim>& particles) {
+  tested_start_.assign(1, 0);
+  tested_.clear();
+  tested_factor_.clear();
+  own_square_.resize(static_cast<std::size_t>(particles.owned));
+  const double largest = std::max(near_radius_, far_radius_);
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    const bool has_row = type_[self] == ParticleType::fluid || type_[self] == ParticleType::wall;
+    if (has_row) {
+      for (const auto& pair : filter_->own_pairs(i)) {
+        const Vector<Dim> way = particles.position[static_cast<std::size_t>(pair.index)] - particles.position[self];
+        own_square_[self].push_back(dot(way, way));
+      }
+    }
+    if (has_row && filter_->has_tests(i)) {
+      const std::size_t count = append_within(largest, -1.0, i, particles.position[self], 0);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double factor = index_[k] == i ? 1.0 : filter_->factor(i, index_[k]);
+        if (factor == 0.0) continue;
+        tested_.push_back(index_[k]);
+        tested_factor_.push_back(factor);
+      }
+    } else if (has_row) {
+      tested_.push_back(-1);  // all count
+      tested_factor_.push_back(1.0);
+    }
+    tested_start_.push_back(static_cast<int>(tested_.size()));
+  }
+}
+
+// The row of particle i: what stands in the cells, as far as the filter leaves it, and its own pairs.
+template <int Dim>
+std::size_t NeighbourSearch<Dim>::append_row(double radius, double above, int i, const Vector<Dim>& centre) {
+  std::size_t count = append_within(radius, above, i, centre, 0);
+  factor_.clear();
+  if (!filter_) return count;
+  const auto self = static_cast<std::size_t>(i);
+  auto next = static_cast<std::size_t>(tested_start_[self]);
+  const auto last = static_cast<std::size_t>(tested_start_[self + 1]);
+  const std::span<const typename PairFilter<Dim>::OwnPair> own = filter_->own_pairs(i);
+  const bool tests = !(last - next == 1 && tested_[next] == -1);
+  if (!tests && own.empty()) return count;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    double factor = 1.0;
+    if (tests) {
+      // Both lists are in the same order, and this one is a part of the other but for what the filter took.
+      std::size_t here = next;
+      while (here < last && tested_[here] != index_[k]) ++here;
+      if (here == last) continue;
+      next = here + 1;
+      factor = tested_factor_[here];
+    }
+    index_[kept] = index_[k];
+    square_[kept] = square_[k];
+    factor_.push_back(factor);
+    ++kept;
+  }
+  const std::size_t most = kept + own.size() + lanes;
+  if (most > index_.size()) {
+    index_.resize(2 * most);
+    square_.resize(2 * most);
+    weight_.resize(2 * most);
+  }
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const double square = own_square_[self][k];
+    if (!(square > above && square < radius * radius)) continue;
+    index_[kept] = own[k].index;
+    square_[kept] = square;
+    factor_.push_back(own[k].factor);
+    ++kept;
+  }
+  return kept;
+}
+
 // Weights of the first `count` particles of the row; 0 at distance 0.
 template <int Dim>
 void NeighbourSearch<Dim>::weigh(double radius, std::size_t count, double* weight) const {
@@ -182,6 +269,7 @@ void NeighbourSearch<Dim>::weigh(double radius, std::size_t count, double* weigh
       weight[k] = square_[k] > 0.0 ? value : 0.0;
     }
   });
+  for (std::size_t k = 0; k < factor_.size(); ++k) weight[k] *= factor_[k];
 }
 
 template <int Dim>
@@ -195,7 +283,7 @@ void NeighbourSearch<Dim>::find_near(const Particles<Dim>& particles) {
   for (int i = 0; i < particles.owned; ++i) {
     const ParticleType type = type_[static_cast<std::size_t>(i)];
     if (type != ParticleType::inlet && type != ParticleType::ghost) {
-      const std::size_t count = append_within(near_radius_, 0.0, i, particles.position[static_cast<std::size_t>(i)], 0);
+      const std::size_t count = append_row(near_radius_, 0.0, i, particles.position[static_cast<std::size_t>(i)]);
       if (used + count > near_.index.size()) {
         near_.index.resize(2 * (used + count));
         near_.weight.resize(2 * (used + count));
@@ -220,7 +308,7 @@ template <int Dim>
 PairRow NeighbourSearch<Dim>::far_row(int i) {
   const ParticleType type = type_[static_cast<std::size_t>(i)];
   if (type != ParticleType::fluid && (type != ParticleType::wall || walls_measure_)) return {};
-  const std::size_t count = append_within(far_radius_, -1.0, i, searched_position(i), 0);
+  const std::size_t count = append_row(far_radius_, -1.0, i, searched_position(i));
   weigh(far_radius_, count, weight_.data());
   return {{index_.data(), count}, {weight_.data(), count}};
 }

@@ -1,62 +1,66 @@
 #pragma once
 // Walls that are mirrors: images of the particles complete every sum over neighbours beyond them.
 
+#include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
+#include "impinge/boundaries/wall_faces.hpp"
 #include "impinge/core/vector.hpp"
+#include "impinge/particles/neighbours.hpp"
 #include "impinge/particles/particles.hpp"
 
 namespace impinge {
 
-/// A flat wall: the fluid is where (x - point).normal > 0.
-template <int Dim>
-struct Face {
-  Vector<Dim> point;   ///< on the face [m]
-  Vector<Dim> normal;  ///< unit vector into the fluid [-]
-
-  /// Signed distance of a position, positive in the fluid [m].
-  double distance(const Vector<Dim>& position) const { return dot(position - point, normal); }
-};
-
-/// An affine map x -> linear x + shift that reflects at one or several faces.
-template <int Dim>
-struct Reflection {
-  Matrix<Dim> linear = Matrix<Dim>::identity();
-  Vector<Dim> shift;         ///< [m]
-  double parity = 1.0;       ///< -1 for an odd number of reflections
-  std::vector<int> faces{};  ///< that it reflects at
-
-  Vector<Dim> of_position(const Vector<Dim>& r) const { return linear * r + shift; }
-};
-
 /// The images of this rank's particles, owned and halo, behind the mirrors. They stand behind the halo in every array
 /// of particles and are made from what this rank has: nothing of them is sent.
+///
+/// Specular pairs: a particle i sees a particle j along the straight line and once more along every path that is
+/// reflected at faces. The image of j stands where the path ends if it is unfolded; the faces are finite, so that not
+/// every particle sees it. A path run backwards is the same path, so that pairs are symmetric. Images at flat faces are
+/// the same for all that see them. At an arc each pair has its own: at the plane that touches the arc at q, the point
+/// of the wall nearest to (d_j x_i + d_i x_j)/(d_i + d_j), with d the distances to the wall. Its share in the sums is
+/// that of a ray tube, J = (l_1 + l_2)/(l_1 + l_2 + 2 k l_1 l_2/cos a), with l the lengths of the two parts of the
+/// path, a its angle to the normal, and k the curvature, positive where the wall bulges into the fluid.
 template <int Dim>
-class MirrorWalls {
+class MirrorWalls final : public PairFilter<Dim> {
  public:
+  using typename PairFilter<Dim>::OwnPair;
+
   /// No walls.
   MirrorWalls() = default;
 
-  /// `reach`: largest radius of a sum over neighbours [m]. Faces that meet do so at right angles.
-  MirrorWalls(std::vector<Face<Dim>> faces, double reach);
+  /// `reach`: largest radius of a sum over neighbours [m]; `spacing`: dp [m]. Planes that meet do so at right angles.
+  MirrorWalls(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls,
+              const std::vector<Motion<Dim>>& motions, double reach, double spacing)
+      : faces_(planes, walls, motions, reach, spacing), reach_(reach), spacing_(spacing) {}
 
-  bool empty() const { return faces_.empty(); }
+  bool empty() const { return faces_.count() == 0; }
+  bool any_moves() const { return faces_.any_moves(); }
+  const WallFaces<Dim>& faces() const { return faces_; }
 
-  /// Reflects owned fluid particles that have passed a face, with their velocity. `spacing`: dp [m]. Not collective.
-  void confine(Particles<Dim>& particles, double spacing) const;
+  /// See WallFaces. Not collective.
+  void move_to(double time, double velocity_time) { faces_.move_to(time, velocity_time); }
 
-  /// Appends the images of all particles within reach of a face, but for wall particles, behind the halo. Not
+  /// Reflects owned fluid particles that have passed a face, with their velocity. `before`: where a particle was when
+  /// the walls moved last [m]. Not collective.
+  void confine(const std::function<Vector<Dim>(int)>& before, Particles<Dim>& particles) const;
+
+  /// Appends the images at flat faces of all particles within reach, but for wall particles, behind the halo. Not
   /// collective.
   void append_images(Particles<Dim>& particles);
+
+  /// Appends the images at arcs, of each pair its own. `around`: the particles within reach of an owned one. Not
+  /// collective.
+  void append_own_images(const std::function<std::span<const int>(int)>& around, Particles<Dim>& particles);
 
   /// Index of the first image, and the particle that each image is of.
   int first_image() const { return first_image_; }
   std::span<const int> originals() const { return original_; }
   std::size_t count() const { return original_.size(); }
-  const Reflection<Dim>& reflection(std::size_t image) const {
-    return reflections_[static_cast<std::size_t>(reflection_[image])];
-  }
+  /// Index of the first image that one particle alone sees.
+  int first_own_image() const { return first_own_image_; }
 
   /// Gives the images the values of their originals: as they are, moved, or turned as a direction.
   template <class T>
@@ -73,6 +77,16 @@ class MirrorWalls {
       direction[at] = reflection(k).linear * direction[from];
     });
   }
+  /// Velocities are mirrored in the frame of the wall: u' = V(y) + M (u - V(x)) at each face.
+  void copy_velocities(const std::vector<Vector<Dim>>& position, std::vector<Vector<Dim>>& velocity) const;
+  /// Those of a viscous fluid, which sticks to a wall that it does not slip along: there u' = V(y) - (u - V(x)).
+  void copy_held_velocities(const std::vector<Vector<Dim>>& position, std::vector<Vector<Dim>>& velocity) const;
+
+  /// What a force per mass changes at an image: its pressure exceeds its original's by rho b.(y - x), its velocity is
+  /// the mirrored one and dt (b - M b), with b = g - a_w in the middle of the way, g the force and a_w the wall's
+  /// acceleration; at one face after the other. `offset`: of the pressures [Pa]. Reads positions, changes velocities.
+  void apply_force(double dt, double density, const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
+                   Particles<Dim>& particles, std::vector<double>& offset) const;
 
   /// Calls use(image, its index, its original's index) for every image.
   template <class Use>
@@ -81,13 +95,47 @@ class MirrorWalls {
       use(k, static_cast<std::size_t>(first_image_) + k, static_cast<std::size_t>(original_[k]));
   }
 
+  bool has_tests(int i) const override { return tested_[static_cast<std::size_t>(i)] != 0; }
+  double factor(int i, int j) const override;
+  std::span<const OwnPair> own_pairs(int i) const override {
+    if (own_start_.empty()) return {};
+    const auto first = static_cast<std::size_t>(own_start_[static_cast<std::size_t>(i)]);
+    return std::span(own_).subspan(first,
+                                   static_cast<std::size_t>(own_start_[static_cast<std::size_t>(i) + 1]) - first);
+  }
+
  private:
-  std::vector<Face<Dim>> faces_;
+  const Reflection<Dim>& reflection(std::size_t image) const { return way(image).whole; }
+  void append_paths(int particle, const Vector<Dim>& place, const MirrorPath& path, const Reflection<Dim>& outer);
+  int way_of(const MirrorPath& path, const Reflection<Dim>& whole);
+  Vector<Dim> velocity_of(std::size_t image, const Vector<Dim>& from, const Vector<Dim>& velocity) const;
+  template <class Use>
+  void along(std::size_t image, const Vector<Dim>& from, Use&& use) const;
+
+  /// How images of one kind are made.
+  struct Way {
+    MirrorPath path;
+    Reflection<Dim> whole;
+    bool moves;  ///< at a wall that moves
+    bool holds;  ///< at walls alone that a viscous fluid sticks to
+  };
+  const Way& way(std::size_t image) const { return ways_[static_cast<std::size_t>(way_[image])]; }
+
+  WallFaces<Dim> faces_;
   double reach_ = 0.0;
-  std::vector<Reflection<Dim>> reflections_;  // at each face, and at those that meet
+  double spacing_ = 0.0;
   int first_image_ = 0;
-  std::vector<int> original_;    // of each image
-  std::vector<int> reflection_;  // likewise
+  int first_own_image_ = 0;
+  std::vector<int> original_;  // of each image
+  std::vector<int> way_;       // likewise
+  std::vector<Way> ways_;
+  std::map<MirrorPath, int> known_;  // ways at flat faces
+  std::vector<char> tested_;         // per owned particle
+  std::vector<int> own_start_;
+  std::vector<OwnPair> own_;
+  // Where everything was when the images were appended.
+  std::span<const Vector<Dim>> position_;
+  std::span<const std::int64_t> id_;
 };
 
 }  // namespace impinge

@@ -19,8 +19,8 @@ struct Wall {
   Outline outline;
   bool wet_right = true;  ///< fluid on the right of the way along the outline: outside a closed one
   bool wet_left = false;  ///< likewise on the left
-  bool slip = true;       ///< false: a viscous fluid sticks to it
-  Motion<2> motion{};     ///< empty: at rest
+  bool slip = false;      ///< a viscous fluid slips along it, too
+  int motion = -1;        ///< number of its motion; -1: at rest
 };
 
 /// A point of a wall's surface where the pressure is measured.

@@ -19,6 +19,12 @@ void number_density(const PairList& near, std::span<double> density);
 /// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`: the one of the weights.
 double packing(const PairList& near, KernelType kernel, int i);
 
+/// Likewise where the weights of pairs with an index from `first_scaled` on are not those of their distances but some
+/// share of them, which the packing's weights then have, too. `radius`: of the weights [m].
+template <int Dim>
+double packing(const PairList& near, std::span<const Vector<Dim>> position, KernelType kernel, double radius,
+               int first_scaled, int i);
+
 /// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &
 /// Wan 2012).
 template <int Dim>
@@ -77,8 +83,8 @@ Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> positio
                       double distance, double spacing, int i);
 
 /// Change of velocity over a displacement, (delta . grad) u [m/s], from the neighbours that are no wall; exact on
-/// linear velocities, zero where the neighbours are too few. No component of the new velocity leaves the range of the
-/// neighbours' and its own: in spray an extrapolation would feed on itself.
+/// linear velocities, zero where the neighbours are too few. Along the change, the new velocity
+/// stays below the neighbours' largest: in spray an extrapolation would feed on itself.
 template <int Dim>
 Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<Dim>> position,
                                   std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,

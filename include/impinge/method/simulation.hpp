@@ -63,6 +63,13 @@ class Simulation {
  private:
   void try_step(double target);
   void pass_boundaries();
+  void move_walls(double time, double velocity_time);
+  void place_wall_points(double time);
+  bool is_wall_point(std::size_t i) const {
+    return state_.particles.type[i] == ParticleType::wall && !scene_.walls.empty();
+  }
+  Vector<Dim> wall_point_at(std::int64_t id, double time) const;
+  double flow_speed() const;
   void redistribute();
   void migrate();
   void count_strays(const Strays& strays);
@@ -73,9 +80,14 @@ class Simulation {
 
   void save(Checkpoint<Dim>& state) const;
   void restore(const Checkpoint<Dim>& state);
+  /// When the walls stood where the last search saw them, and when they had the velocities that it saw [s].
+  struct WallTimes {
+    double place = 0.0;
+    double velocity = 0.0;
+  };
   template <class Use>
   static void for_numbers(StepReport& report, AveragingWindow& window, std::vector<Inlet<Dim>>& inlets,
-                          std::int64_t& next_id, Use&& use);
+                          std::int64_t& next_id, WallTimes& wall_times, Use&& use);
 
   [[noreturn]] void fail(Phase phase, const std::string& reason) const;
 
@@ -86,6 +98,7 @@ class Simulation {
   Projection<Dim> projection_;
   StepReport report_;
   AveragingWindow window_;
+  WallTimes wall_times_;
   Checkpoint<Dim> step_start_;  // without owners and coarse matrix
 };
 

@@ -44,6 +44,12 @@ struct State {
     walls.copy_directions(field);
   }
 
+  /// Likewise the velocities, which move with the walls. Collective.
+  void refresh_velocities() {
+    decomposition.halo().refresh(particles.velocity, particles.owned);
+    walls.copy_velocities(particles.position, particles.velocity);
+  }
+
   /// Likewise the positions. Collective.
   void refresh_positions() {
     decomposition.refresh_positions(particles);

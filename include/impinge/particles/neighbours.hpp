@@ -35,6 +35,25 @@ struct PairList {
   }
 };
 
+/// What stands between particles: which pairs count, and which only one particle has.
+template <int Dim>
+class PairFilter {
+ public:
+  /// A neighbour of one particle alone, by its index, and its share in the sums.
+  struct OwnPair {
+    int index;
+    double factor;
+  };
+
+  virtual ~PairFilter() = default;
+  /// False if every pair of an owned particle counts in full.
+  virtual bool has_tests(int i) const = 0;
+  /// Share of a pair in the sums [-]; 0 where the two do not see each other. The same for both.
+  virtual double factor(int i, int j) const = 0;
+  /// Neighbours of an owned particle that stand in no cell.
+  virtual std::span<const OwnPair> own_pairs(int i) const = 0;
+};
+
 /// Finds all pairs within two radii: the near ones as a list, the far ones row by row as they are asked for, since
 /// there are too many to keep. A row's order is that of the cells and, within a cell, of the ids, so sums over a row
 /// are bitwise the same for every decomposition; columns of owned particles ascend.
@@ -46,9 +65,23 @@ class NeighbourSearch {
   NeighbourSearch(const CellGrid<Dim>& cells, int reach, KernelType kernel, double near_radius, double far_radius,
                   bool walls_measure = false);
 
-  /// Reads positions and types of owned particles (sorted), halo and images. Inlet particles and ghosts get empty rows.
-  /// Not collective.
-  void search(const Particles<Dim>& particles);
+  /// Puts owned particles (sorted), halo and images into cells. Reads their positions and types. Not collective.
+  void arrange(const Particles<Dim>& particles);
+
+  /// The particles within the larger radius of an owned one and its position, itself among them but for a wall particle
+  /// that measures, in the order of a row. Valid until the next call. After arrange.
+  std::span<const int> around(int i, const Vector<Dim>& position);
+
+  /// Finds the pairs, and of those of each particle what the filter leaves. Inlet particles and ghosts get empty rows.
+  /// Reads positions and types, also of particles that were added behind the arranged ones. The filter, which may be
+  /// none, must live until the last far row was used. After arrange. Not collective.
+  void find(const Particles<Dim>& particles, const PairFilter<Dim>* filter = nullptr);
+
+  /// Both.
+  void search(const Particles<Dim>& particles) {
+    arrange(particles);
+    find(particles);
+  }
 
   const PairList& near() const { return near_; }
 
@@ -67,9 +100,10 @@ class NeighbourSearch {
   std::size_t bytes() const;
 
  private:
-  void arrange(const Particles<Dim>& particles);
+  void find_tested(const Particles<Dim>& particles);
   void find_near(const Particles<Dim>& particles);
   PairRow far_row(int i);
+  std::size_t append_row(double radius, double above, int i, const Vector<Dim>& centre);
   std::size_t append_within(double radius, double above, int i, const Vector<Dim>& centre, std::size_t used);
   void weigh(double radius, std::size_t count, double* weight) const;
 
@@ -94,6 +128,13 @@ class NeighbourSearch {
   Buffer<int> index_;
   Buffer<double> square_;  // of the distances
   Buffer<double> weight_;
+  std::vector<double> factor_;  // empty: 1
+  // What the filter leaves of the pairs within the larger radius, of the rows that it tests.
+  const PairFilter<Dim>* filter_ = nullptr;
+  std::vector<int> tested_start_;  // per owned particle; empty without tests
+  std::vector<int> tested_;
+  std::vector<double> tested_factor_;
+  std::vector<std::vector<double>> own_square_;  // of the distances of own pairs, per owned particle; empty without
 };
 
 }  // namespace impinge

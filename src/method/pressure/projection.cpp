@@ -58,20 +58,12 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
   return report;
 }
 
-// The body force acts on an image as on its original, so that its velocity is the mirrored one but for dt g, and a
-// pressure that balances the force differs by rho g.(r' - r); g in the middle between the two.
 template <int Dim>
 void Projection<Dim>::find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state) {
   image_offset_.clear();
-  if (state.walls.empty() || force.is_zero()) return;
-  Particles<Dim>& particles = state.particles;
-  image_offset_.resize(state.walls.count());
-  state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
-    const Vector<Dim> way = particles.position[at] - particles.position[from];
-    const Vector<Dim> acceleration = force.at(particles.position[from] + 0.5 * way);
-    image_offset_[image] = settings_.fluid.density * dot(acceleration, way);
-    particles.velocity[at] += dt * (acceleration - state.walls.reflection(image).linear * acceleration);
-  });
+  if (state.walls.empty() || (force.is_zero() && !state.walls.any_moves())) return;
+  const auto force_at = [&](const Vector<Dim>& position) { return force.at(position); };
+  state.walls.apply_force(dt, settings_.fluid.density, force_at, state.particles, image_offset_);
 }
 
 template <int Dim>
@@ -117,9 +109,12 @@ std::vector<double> Projection<Dim>::crowding(const State<Dim>& state) const {
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (state.role[self] != PressureRole::unknown || particles.free_surface[self]) continue;
-    crowded[self] = settings_.pressure.packing
-                        ? packing(state.near(), settings_.kernel.type, i) / near_sums_.packing - 1.0
-                        : particles.number_density[self] / near_sums_.number_density - 1.0;
+    crowded[self] = settings_.pressure.packing ? packing<Dim>(state.near(), particles.position, settings_.kernel.type,
+                                                              settings_.kernel.radius * settings_.particles.spacing,
+                                                              state.walls.first_own_image(), i) /
+                                                         near_sums_.packing -
+                                                     1.0
+                                               : particles.number_density[self] / near_sums_.number_density - 1.0;
   }
   if (settings_.pressure.packing)
     for (int pass = 0; pass < crowding_passes; ++pass) smooth(state, crowded);

@@ -1,0 +1,191 @@
+#pragma once
+// The faces of all walls as they stand at a time, and which lines they leave free: the geometry of specular images.
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "impinge/boundaries/motion.hpp"
+#include "impinge/boundaries/wall.hpp"
+#include "impinge/core/vector.hpp"
+
+namespace impinge {
+
+/// A plane: the fluid is where (x - point).normal > 0.
+template <int Dim>
+struct Face {
+  Vector<Dim> point;   ///< on the face [m]
+  Vector<Dim> normal;  ///< unit vector into the fluid [-]
+
+  /// Signed distance of a position, positive in the fluid [m].
+  double distance(const Vector<Dim>& position) const { return dot(position - point, normal); }
+};
+
+/// An affine map x -> linear x + shift: a reflection, or one after the other.
+template <int Dim>
+struct Reflection {
+  Matrix<Dim> linear = Matrix<Dim>::identity();
+  Vector<Dim> shift;  ///< [m]
+
+  Vector<Dim> of_position(const Vector<Dim>& r) const { return linear * r + shift; }
+};
+
+/// The reflection at a plane.
+template <int Dim>
+Reflection<Dim> reflection_at(const Face<Dim>& plane);
+
+/// x -> outer(inner(x)).
+template <int Dim>
+Reflection<Dim> product(const Reflection<Dim>& outer, const Reflection<Dim>& inner);
+
+/// Faces, by their numbers, that a line is reflected at on its way from a particle, in this order.
+struct MirrorPath {
+  static constexpr int longest = 4;
+
+  std::array<int, longest> face{};
+  int count = 0;
+
+  MirrorPath then(int next) const {
+    MirrorPath result = *this;
+    result.face[static_cast<std::size_t>(result.count++)] = next;
+    return result;
+  }
+  MirrorPath reversed() const {
+    MirrorPath result;
+    for (int k = count; k-- > 0;) result = result.then(face[static_cast<std::size_t>(k)]);
+    return result;
+  }
+  std::span<const int> faces() const { return {face.data(), static_cast<std::size_t>(count)}; }
+  friend auto operator<=>(const MirrorPath&, const MirrorPath&) = default;
+};
+
+/// Planes that have no end, then the faces of walls: segments and arcs, in two dimensions. A plate that is wet on both
+/// sides has two faces. A line may touch a wall at its end only.
+///
+/// Where a line passes an edge, one particle's image ends and another's begins. Unless the two coincide, as in corners
+/// of 180/n degrees, both fade: by 1/2 + s/(2 d), with s the edge's distance from the line and d a quarter of a
+/// spacing.
+template <int Dim>
+class WallFaces {
+ public:
+  WallFaces() = default;
+
+  /// `reach`: largest radius of a sum over neighbours [m]; `spacing`: dp [m].
+  WallFaces(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, std::vector<Motion<Dim>> motions,
+            double reach, double spacing);
+
+  /// Moves the walls to where they are at a time [s]. Their velocity is that at another time.
+  void move_to(double time, double velocity_time);
+  /// The motion that all walls share; -1: they are at rest or move apart.
+  int common_motion() const;
+  bool any_moves() const { return !motions_.empty(); }
+
+  int count() const { return static_cast<int>(faces_.size()); }
+  bool is_flat(int face) const { return at(face).radius == 0.0; }
+  /// True for the two sides of a plate.
+  bool is_partner(int face, int other) const { return at(face).partner == other; }
+  bool has_ends(int face) const { return at(face).vertex[0] >= 0; }
+  bool has_arcs() const {
+    return std::ranges::any_of(faces_, [](const FaceData& face) { return face.radius > 0.0; });
+  }
+  bool slips(int face) const { return at(face).slip; }
+
+  /// The faces that may be nearer to a position than twice the reach.
+  std::span<const int> around(const Vector<Dim>& x) const;
+
+  /// Distance of a position to the plane or circle that a face is part of, positive on its wet side [m].
+  double height(int face, const Vector<Dim>& x) const;
+  /// Distance to the face itself, not negative [m].
+  double distance(int face, const Vector<Dim>& x) const;
+  /// The plane that touches an arc at the point nearest to a position, and whether the point is on the arc.
+  Face<Dim> tangent_plane(int face, const Vector<Dim>& x) const;
+  bool holds(int face, const Vector<Dim>& point) const { return covers(at(face), point); }
+  /// Share of a pair that meets at an arc; `plane`: touches it there; `length`: of the path [m].
+  double ray_share(int face, const Face<Dim>& plane, const Vector<Dim>& one, const Vector<Dim>& two,
+                   double length) const;
+  /// The plane of a flat face.
+  Face<Dim> plane(int face) const { return {at(face).point, at(face).normal}; }
+
+  /// Velocity and acceleration of the wall's material at a position [m/s], [m/s^2].
+  Vector<Dim> velocity(int face, const Vector<Dim>& x) const;
+  Vector<Dim> acceleration(int face, const Vector<Dim>& x) const;
+  bool moves(int face) const { return at(face).motion >= 0; }
+
+  /// False where every line to a neighbour and to an image of one is free.
+  bool has_tests(const Vector<Dim>& x) const;
+  /// What the walls leave of the straight line between two positions: 1 if it is free, 0 if not [-].
+  double line_factor(const Vector<Dim>& from, const Vector<Dim>& to) const;
+  /// Likewise of a line that is reflected at the faces of a path; `image`: where it ends if it is unfolded.
+  /// `plane`: of a path over an arc, which touches it.
+  double path_factor(const Vector<Dim>& from, const Vector<Dim>& image, const MirrorPath& path,
+                     const Face<Dim>& plane) const;
+
+  /// The way of a particle from where it was before the walls moved to where it shall be: reflected at every face that
+  /// it meets, and its velocity with it.
+  void confine(const Vector<Dim>& from, Vector<Dim>& to, Vector<Dim>& velocity) const;
+
+ private:
+  struct FaceData {
+    Vector<Dim> point;   ///< begin of a segment
+    Vector<Dim> normal;  ///< into the fluid; of flat faces
+    Vector<Dim> center;  ///< of an arc
+    double radius = 0.0;
+    double bulge = 0.0;                 ///< of an arc: 1 where its centre is on the dry side, else -1
+    double sweep = 0.0;                 ///< of an arc from begin to end, counter-clockwise positive [rad]
+    std::array<int, 2> vertex{-1, -1};  ///< begin, end: the fluid is on the left of the way; -1: no end
+    int partner = -1;                   ///< the face on the other side of a plate
+    int motion = -1;
+    bool slip = false;
+  };
+  /// The fluid beside an end of a face, from the face to the next one around the vertex.
+  struct Sector {
+    int face;
+    double sense;          ///< in which it follows the face: 1 counter-clockwise
+    Vector<Dim> along;     ///< from the vertex along the face
+    Vector<Dim> bisector;  ///< of the sector
+    double angle;          ///< of the sector [rad]
+    int neighbour;         ///< the face on its other side; -1: none
+    bool fades;            ///< lines by the vertex fade
+  };
+  struct Vertex {
+    Vector<Dim> place;
+    std::vector<Sector> sectors;
+    bool is_covered = false;  ///< by another face, so that nothing passes there
+  };
+
+  const FaceData& at(int face) const { return faces_[static_cast<std::size_t>(face)]; }
+  const Vertex& vertex(int face, int end) const {
+    return vertices_[static_cast<std::size_t>(at(face).vertex[static_cast<std::size_t>(end)])];
+  }
+  void add_wall(const Wall& wall);
+  int add_vertex(const Vector<Dim>& place, int motion);
+  void find_sectors();
+  void cover_vertices();
+  void arrange();
+  Vector<Dim> tangent(const FaceData& face, int end) const;
+  const Sector* sector_of(const Vertex& vertex, int face) const;
+  bool fades(int face, int end) const;
+  bool covers(const FaceData& face, const Vector<Dim>& x) const;
+  bool crosses(int face, const Vector<Dim>& from, const Vector<Dim>& to, double since, double until) const;
+  double leg_factor(const Vector<Dim>& from, const Vector<Dim>& to, double since, double until,
+                    std::span<const int> skipped, std::span<const int> skipped_vertices) const;
+  bool first_hit(const Vector<Dim>& from, const Vector<Dim>& to, int skipped, int& face, double& share) const;
+
+  std::vector<FaceData> rest_, faces_;  // in the rest pose; as they stand
+  std::vector<Vertex> rest_vertices_, vertices_;
+  std::vector<int> vertex_motion_;
+  std::vector<Motion<Dim>> motions_;
+  std::vector<Pose<Dim>> pose_, old_pose_;  // by motion
+  std::vector<Pose<Dim>> velocity_pose_;
+  double reach_ = 0.0;
+  double spacing_ = 0.0;
+  // Cells of faces: a box around all that have ends.
+  Vector<Dim> low_;
+  double edge_ = 1.0;
+  std::array<int, Dim> extent_{};
+  std::vector<std::vector<int>> cell_;
+  std::vector<int> planes_;
+};
+
+}  // namespace impinge
