@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "impinge/core/mpi.hpp"
+#include "impinge/scenes/check_names.hpp"
 
 namespace impinge {
 namespace {
@@ -73,6 +74,7 @@ void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::ve
   std::vector<const FluidRegion*> sound;
   std::vector<PlacedRegion<Dim>> in_place;  // of the sound ones
   for (const FluidRegion& region : regions) {
+    check_shape(keys, Dim, ShapeKind::closed, region);
     if (!is_usable(keys, region)) continue;
     std::vector<std::string> mistakes;
     if (scaled_shape<Dim>(region, mistakes)) {
@@ -85,7 +87,6 @@ void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::ve
         mistakes.push_back(problem);
       }
     }
-    check_turn(keys, Dim, region);
     if (Dim == 3 && region.spin != 0.0)
       keys.mistake(region.spin, "a rotation in two dimensions only; allowed: 0 (rad/s), and fluid.region.gradient");
     if (!region.gradient.empty() && region.gradient.size() != Dim * Dim)
@@ -133,10 +134,7 @@ bool has_shape(const FluidRegion& region, int dimension) {
 
 void check_fluid(Keys& keys, int dimension, double spacing, const Box<3>& room,
                  const std::vector<FluidRegion>& regions) {
-  for (std::size_t b = 0; b < regions.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a)
-      if (regions[a].name == regions[b].name)
-        keys.mistake(regions[b].name, fmt::format("the name is used twice, first at {}", keys.place(regions[a].name)));
+  check_names(keys, regions);
   if (dimension == 2) check_regions<2>(keys, spacing, room, regions);
   if (dimension == 3) check_regions<3>(keys, spacing, room, regions);
 }

@@ -1,5 +1,7 @@
 #include "impinge/scenes/shape_settings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "impinge/geometry/solids.hpp"
@@ -107,7 +109,15 @@ void derive_shape(const Keys& keys, int dimension, ShapeSettings& shape) {
   if (!keys.given(shape.about)) shape.about = middle_of(shape, dimension);
 }
 
-void check_turn(Keys& keys, int dimension, const ShapeSettings& shape) {
+void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings& shape) {
+  if (keys.usable(shape.shape)) {
+    if (kind == ShapeKind::closed && shape.is_open())
+      keys.mistake(shape.shape,
+                   fmt::format("a line has no inside; allowed: {}",
+                               dimension == 2 ? "\"box\", \"circle\", \"polygon\"" : "\"box\", \"sphere\""));
+    if (kind == ShapeKind::any && shape.shape == ShapeType::sphere)
+      keys.mistake(shape.shape, "a sphere has three dimensions");
+  }
   if (dimension == 3 && keys.usable(shape.rotate) && shape.rotate != 0.0)
     keys.mistake(shape.rotate, "turns in two dimensions only; allowed: 0 (deg)");
 }
@@ -131,10 +141,7 @@ bool is_usable(const Keys& keys, const ShapeSettings& shape) {
 
 template <>
 std::shared_ptr<const Shape<2>> scaled_shape(const ShapeSettings& shape, std::vector<std::string>& mistakes) {
-  if (shape.is_open()) {
-    mistakes.push_back("a line has no inside; allowed: \"box\", \"circle\", \"polygon\"");
-    return nullptr;
-  }
+  if (shape.is_open()) return nullptr;
   const std::optional<Outline> outline = scaled_outline(shape, mistakes);
   return outline ? std::make_shared<const Outline>(*outline) : nullptr;
 }
@@ -144,8 +151,7 @@ std::shared_ptr<const Shape<3>> scaled_shape(const ShapeSettings& shape, std::ve
   if (shape.shape == ShapeType::sphere)
     return std::make_shared<const Sphere>(scaling_of<3>(shape)(vector_of<3>(shape.center)), shape.scale * shape.radius);
   if (shape.shape != ShapeType::box) {
-    mistakes.push_back(shape.is_open() ? "a line has no inside; allowed: \"box\", \"sphere\""
-                                       : "circles and polygons have two dimensions");
+    mistakes.push_back("circles and polygons have two dimensions");
     return nullptr;
   }
   const Box<3> box = scaled_box<3>(shape);

@@ -43,8 +43,8 @@ void declare_shape(Keys& keys, ShapeSettings& shape, ShapeKind kind);
 /// Sets `about` where it is not given. `dimension`: of space.
 void derive_shape(const Keys& keys, int dimension, ShapeSettings& shape);
 
-/// Notes a turn in three dimensions.
-void check_turn(Keys& keys, int dimension, const ShapeSettings& shape);
+/// Notes a shape that is not of the kind, and a turn in three dimensions.
+void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings& shape);
 
 /// True where all that the shape and its place depend on has allowed values.
 bool is_usable(const Keys& keys, const ShapeSettings& shape);
