@@ -82,7 +82,7 @@ void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
                                           number_text(least)));
   }
   check_method(keys, c);
-  check_scene(keys, c, inputs, keys.usable(c.walls.model) && c.walls.model == WallModel::mirror);
+  check_scene(keys, c, inputs);
 }
 
 /// Names and values of the keys that a restart cannot change.
@@ -93,7 +93,7 @@ Case parse(const std::vector<NamedText>& files, const std::vector<std::string>& 
   Keys keys(c.dimension);
   declare(keys, c);
   if (read_files(keys, files, settings)) {
-    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid};
+    const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid, c.time, c.walls};
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }

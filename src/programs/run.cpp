@@ -66,9 +66,8 @@ template <int Dim>
 std::vector<FluidVolume> fluid_volumes(const Case& config) {
   std::vector<FluidVolume> all;
   for (const FluidRegion& region : config.regions) {
-    const PlacedRegion<Dim> placed(region, config.particles.spacing);
-    const double particles = static_cast<double>(placed.count()) * std::pow(config.particles.spacing, Dim);
-    all.push_back({region.name, placed.volume(), particles / placed.volume() - 1.0});
+    const auto [volume, particles] = volume_between_walls<Dim>(config, config, region);
+    all.push_back({region.name, volume, particles / volume - 1.0});
   }
   return all;
 }

@@ -10,94 +10,15 @@
 #include <optional>
 
 #include "impinge/core/mpi.hpp"
-#include "impinge/geometry/outline.hpp"
-#include "impinge/geometry/solids.hpp"
+#include "impinge/scenes/check_names.hpp"
 
 namespace impinge {
 namespace {
 
-template <int Dim>
-Vector<Dim> vector_of(const Numbers& x) {
-  Vector<Dim> result;
-  for (int k = 0; k < Dim; ++k) result[k] = x[static_cast<std::size_t>(k)];
-  return result;
-}
-
-template <int Dim>
-Box<Dim> scaled_box(const FluidRegion& region) {
-  const Transform<Dim> scaling{.scale = region.scale, .about = vector_of<Dim>(region.about)};
-  return {scaling(vector_of<Dim>(region.low)), scaling(vector_of<Dim>(region.high))};
-}
-
-/// The shape, scaled but not turned or moved; nothing, and what is wrong with it, if there is no such shape.
-std::shared_ptr<const Shape<2>> shape_of(const FluidRegion& region, std::vector<std::string>& mistakes, Vector<2>) {
-  const Transform<2> scaling{.scale = region.scale, .about = vector_of<2>(region.about)};
-  std::optional<Outline> outline;
-  if (region.shape == RegionShape::box) {
-    const Box<2> box = scaled_box<2>(region);
-    outline = make_box(box.low, box.high, mistakes);
-  } else if (region.shape == RegionShape::circle) {
-    outline = make_circle(scaling(vector_of<2>(region.center)), region.scale * region.radius, mistakes);
-  } else if (region.shape == RegionShape::polygon) {
-    std::vector<Vector<2>> points;
-    for (const Numbers& point : region.points) points.push_back(scaling(vector_of<2>(point)));
-    outline = make_polygon(points, mistakes);
-  } else {
-    mistakes.push_back("a sphere has three dimensions");
-  }
-  return outline ? std::make_shared<const Outline>(*outline) : nullptr;
-}
-
-std::shared_ptr<const Shape<3>> shape_of(const FluidRegion& region, std::vector<std::string>& mistakes, Vector<3>) {
-  const Transform<3> scaling{.scale = region.scale, .about = vector_of<3>(region.about)};
-  if (region.shape == RegionShape::sphere)
-    return std::make_shared<const Sphere>(scaling(vector_of<3>(region.center)), region.scale * region.radius);
-  if (region.shape != RegionShape::box) {
-    mistakes.push_back("circles and polygons have two dimensions");
-    return nullptr;
-  }
-  const Box<3> box = scaled_box<3>(region);
-  for (int k = 0; k < 3; ++k) {
-    if (box.low[k] < box.high[k]) continue;
-    mistakes.push_back("the low corner is not below the high corner along every axis");
-    return nullptr;
-  }
-  return std::make_shared<const Block>(box);
-}
-
-/// The middle of the shape's numbers, unscaled.
-Numbers middle_of(const FluidRegion& region, int dimension) {
-  if (region.shape == RegionShape::circle || region.shape == RegionShape::sphere) return region.center;
-  Numbers low = region.low, high = region.high;
-  if (region.shape == RegionShape::polygon && !region.points.empty()) {
-    low = high = region.points.front();
-    for (const Numbers& point : region.points) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) {
-        low[k] = std::min(low[k], point[k]);
-        high[k] = std::max(high[k], point[k]);
-      }
-    }
-  }
-  Numbers middle{};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) middle[k] = 0.5 * (low[k] + high[k]);
-  return middle;
-}
-
-/// True where what a region's shape and place depend on has allowed values.
+/// True where what a region's particles depend on has allowed values.
 bool is_usable(const Keys& keys, const FluidRegion& region) {
-  if (!keys.usable(region.shape, region.scale, region.rotate, region.translate, region.about, region.velocity,
-                   region.spin, region.gradient))
-    return false;
-  switch (region.shape) {
-    case RegionShape::box:
-      return keys.usable(region.low, region.high);
-    case RegionShape::polygon:
-      return keys.usable(region.points);
-    case RegionShape::circle:
-    case RegionShape::sphere:
-      return keys.usable(region.center, region.radius);
-  }
-  return false;
+  const ShapeSettings& shape = region;
+  return is_usable(keys, shape) && keys.usable(region.velocity, region.spin, region.gradient);
 }
 
 /// A point that lies deeper than `depth` in both regions, of a fine lattice over what their bounds have in common.
@@ -153,9 +74,10 @@ void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::ve
   std::vector<const FluidRegion*> sound;
   std::vector<PlacedRegion<Dim>> in_place;  // of the sound ones
   for (const FluidRegion& region : regions) {
+    check_shape(keys, Dim, ShapeKind::closed, region);
     if (!is_usable(keys, region)) continue;
     std::vector<std::string> mistakes;
-    if (shape_of(region, mistakes, Vector<Dim>{})) {
+    if (scaled_shape<Dim>(region, mistakes)) {
       const PlacedRegion<Dim> placed_region(region, spacing);
       const std::string problem = problem_of(placed_region, spacing, room);
       if (problem.empty()) {
@@ -165,7 +87,6 @@ void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::ve
         mistakes.push_back(problem);
       }
     }
-    if (Dim == 3 && region.rotate != 0.0) keys.mistake(region.rotate, "turns in two dimensions only; allowed: 0 (deg)");
     if (Dim == 3 && region.spin != 0.0)
       keys.mistake(region.spin, "a rotation in two dimensions only; allowed: 0 (rad/s), and fluid.region.gradient");
     if (!region.gradient.empty() && region.gradient.size() != Dim * Dim)
@@ -187,65 +108,42 @@ void check_regions(Keys& keys, double spacing, const Box<3>& room, const std::ve
 }  // namespace
 
 void declare_fluid(Keys& keys, std::vector<FluidRegion>& regions) {
-  keys.list(
-      "fluid.region", regions, "a region full of fluid at the start", {.fixed = true},
-      [](Keys& inner, FluidRegion& region) {
-        inner.add("name", region.name, "name of the region", {.fallback = "region_<number>"});
-        inner.add("shape", region.shape, "box, circle and polygon in 2D; box and sphere in 3D", {.required = true});
-        inner.only_where(region.shape, {RegionShape::box}, [&] {
-          inner.add("low", region.low, "corner with the smallest coordinates", {.unit = "m", .required = true});
-          inner.add("high", region.high, "corner with the largest coordinates", {.unit = "m", .required = true});
-        });
-        inner.only_where(region.shape, {RegionShape::circle, RegionShape::sphere}, [&] {
-          inner.add("center", region.center, "centre", {.unit = "m", .required = true});
-          inner.add("radius", region.radius, "radius", {.unit = "m", .range = positive, .required = true});
-        });
-        inner.only_where(region.shape, {RegionShape::polygon}, [&] {
-          inner.add("points", region.points, "corners in order, in either direction", {.unit = "m", .required = true});
-        });
-        inner.add("scale", region.scale, "factor by which the shape is larger", {.range = positive});
-        inner.add("rotate", region.rotate, "angle by which the shape and its lattice are turned, 2D", {.unit = "deg"});
-        inner.add("translate", region.translate, "by which the shape is then moved", {.unit = "m"});
-        inner.add("about", region.about, "fixed point of scale, rotate, spin and gradient, before translate",
-                  {.unit = "m", .fallback = "the middle of the shape"});
-        inner.add("velocity", region.velocity, "velocity at the start", {.unit = "m/s"});
-        inner.add("spin", region.spin, "solid rotation at the start, counter-clockwise, 2D", {.unit = "rad/s"});
-        inner.add("gradient", region.gradient, "velocity gradient at the start, du_i/dx_j row by row", {.unit = "1/s"});
-      });
+  keys.list("fluid.region", regions, "a region full of fluid at the start", {.fixed = true},
+            [](Keys& inner, FluidRegion& region) {
+              inner.add("name", region.name, "name of the region", {.fallback = "region_<number>"});
+              declare_shape(inner, region, ShapeKind::closed);
+              inner.add("velocity", region.velocity, "velocity at the start", {.unit = "m/s"});
+              inner.add("spin", region.spin, "solid rotation at the start, counter-clockwise, 2D", {.unit = "rad/s"});
+              inner.add("gradient", region.gradient, "velocity gradient at the start, du_i/dx_j row by row",
+                        {.unit = "1/s"});
+            });
 }
 
 void derive_fluid(const Keys& keys, int dimension, std::vector<FluidRegion>& regions) {
   for (std::size_t k = 0; k < regions.size(); ++k) {
     FluidRegion& region = regions[k];
     if (!keys.given(region.name)) region.name = fmt::format("region_{}", k + 1);
-    if (!keys.given(region.about)) region.about = middle_of(region, dimension);
+    derive_shape(keys, dimension, region);
   }
 }
 
 bool has_shape(const FluidRegion& region, int dimension) {
   std::vector<std::string> mistakes;
-  return dimension == 2 ? shape_of(region, mistakes, Vector<2>{}) != nullptr
-                        : shape_of(region, mistakes, Vector<3>{}) != nullptr;
+  return dimension == 2 ? scaled_shape<2>(region, mistakes) != nullptr : scaled_shape<3>(region, mistakes) != nullptr;
 }
 
 void check_fluid(Keys& keys, int dimension, double spacing, const Box<3>& room,
                  const std::vector<FluidRegion>& regions) {
-  for (std::size_t b = 0; b < regions.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a)
-      if (regions[a].name == regions[b].name)
-        keys.mistake(regions[b].name, fmt::format("the name is used twice, first at {}", keys.place(regions[a].name)));
+  check_names(keys, regions);
   if (dimension == 2) check_regions<2>(keys, spacing, room, regions);
   if (dimension == 3) check_regions<3>(keys, spacing, room, regions);
 }
 
 template <int Dim>
 PlacedRegion<Dim>::PlacedRegion(const FluidRegion& region, double spacing)
-    : velocity_(vector_of<Dim>(region.velocity)) {
+    : placement_(placement_of<Dim>(region)), velocity_(vector_of<Dim>(region.velocity)) {
   std::vector<std::string> mistakes;
-  shape_ = shape_of(region, mistakes, Vector<Dim>{});
-  placement_.about = vector_of<Dim>(region.about);
-  placement_.translate = vector_of<Dim>(region.translate);
-  if constexpr (Dim == 2) placement_.rotation = rotation(region.rotate);
+  shape_ = scaled_shape<Dim>(region, mistakes);
   centre_ = placement_(placement_.about);
   for (std::size_t k = 0; k < region.gradient.size(); ++k)
     gradient_.row[k / Dim][static_cast<int>(k % Dim)] = region.gradient[k];

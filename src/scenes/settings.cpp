@@ -13,6 +13,7 @@
 
 #include "impinge/boundaries/wall.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
+#include "impinge/scenes/open_scene_settings.hpp"
 
 namespace impinge {
 namespace {
@@ -40,15 +41,6 @@ std::span<const double> components(const Numbers& x, int dimension) {
 }
 
 double product(std::span<const double> x) { return std::accumulate(x.begin(), x.end(), 1.0, std::multiplies{}); }
-
-/// Particles that fill a volume [m^3, m^2 in 2D] are counted by 32-bit integers.
-void check_count(Keys& keys, const SceneInputs& in, double volume) {
-  if (!keys.usable(in.spacing, in.dimension)) return;
-  constexpr int most = std::numeric_limits<std::int32_t>::max();
-  const double count = volume / std::pow(in.spacing, in.dimension);
-  if (count <= most) return;
-  keys.mistake(in.spacing, fmt::format("makes some {:.2g} particles; allowed: at most {}", count, most));
-}
 
 /// `setting` is one length or several.
 template <class T>
@@ -99,8 +91,8 @@ void check_jet(Keys& keys, const JetSettings& jet, const PlateSettings& plate, c
   }
 }
 
-void check_tank(Keys& keys, const TankSettings& tank, const std::vector<FluidRegion>& regions, const SceneInputs& in,
-                bool mirrored) {
+void check_tank(Keys& keys, const TankSettings& tank, const std::vector<FluidRegion>& regions, const SceneInputs& in) {
+  const bool mirrored = keys.usable(in.walls.model) && in.walls.model == WallModel::mirror;
   const auto size = components(tank.size, in.dimension);
   if (keys.usable(tank.size)) check_count(keys, in, product(size));
   check_multiples(keys, in, tank.size, size);
@@ -136,30 +128,6 @@ void check_box(Keys& keys, const PeriodicBoxSettings& box, const SceneInputs& in
   }
 }
 
-/// The smallest box around all regions, in two or three dimensions [m].
-Box<3> bounds_of(const SceneSettings& s, const SceneInputs& in) {
-  Box<3> around;
-  bool first = true;
-  const auto add = [&]<int Dim>(const Box<Dim>& box) {
-    for (int k = 0; k < Dim; ++k) {
-      around.low[k] = first ? box.low[k] : std::min(around.low[k], box.low[k]);
-      around.high[k] = first ? box.high[k] : std::max(around.high[k], box.high[k]);
-    }
-    first = false;
-  };
-  for (const FluidRegion& region : s.regions) {
-    if (!has_shape(region, in.dimension)) continue;
-    if (in.dimension == 2) add(PlacedRegion<2>(region, in.spacing).bounds());
-    if (in.dimension == 3) add(PlacedRegion<3>(region, in.spacing).bounds());
-  }
-  return around;
-}
-
-double longest_side(const Box<3>& box) {
-  const Vector<3> size = box.high - box.low;
-  return std::max({size[0], size[1], size[2]});
-}
-
 /// The largest gravity at any time [m/s^2].
 double largest_gravity(const Keys& keys, const FluidSettings& fluid) {
   const auto strength = [&](const Numbers& g) { return keys.usable(g) ? std::hypot(g[0], g[1], g[2]) : 0.0; };
@@ -169,61 +137,12 @@ double largest_gravity(const Keys& keys, const FluidSettings& fluid) {
   return largest;
 }
 
-/// The fastest start, and a fall over the fluid's longest side [m/s].
-double region_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in, double gravity) {
-  if (!keys.usable(in.dimension, in.spacing)) return 0.0;
-  const double side = longest_side(bounds_of(s, in));
-  double fastest = 0.0;
-  for (const FluidRegion& region : s.regions) {
-    double rate = std::abs(region.spin);
-    for (const double slope : region.gradient) rate = std::max(rate, std::abs(slope));
-    fastest = std::max(fastest, std::hypot(region.velocity[0], region.velocity[1], region.velocity[2]) + rate * side);
-  }
-  const double pull = in.fluid.central_force * in.fluid.central_force * side;
-  return std::sqrt(fastest * fastest + 2.0 * (gravity + pull) * side);
-}
-
-void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
-  if (!keys.usable(in.dimension, in.spacing)) return;
-  const Box<3> fluid = bounds_of(s, in);
-  const double margin = longest_side(fluid);
-  for (int k = 0; k < in.dimension; ++k) {
-    const auto axis = static_cast<std::size_t>(k);
-    if (!keys.given(s.domain.low)) s.domain.low[axis] = fluid.low[k] - margin;
-    if (!keys.given(s.domain.high)) s.domain.high[axis] = fluid.high[k] + margin;
-  }
-}
-
 /// Where the regions may have fluid [m].
 Box<3> room_of(const Keys& keys, const SceneSettings& s) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (keys.usable(s.tank.size)) return {{}, {s.tank.size}};
   if (keys.usable(s.domain.low, s.domain.high)) return {{s.domain.low}, {s.domain.high}};
   return {{{-infinity, -infinity, -infinity}}, {{infinity, infinity, infinity}}};
-}
-
-void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  if (!keys.usable(s.regions, s.domain.low, s.domain.high)) return;
-  if (s.regions.empty()) {
-    keys.mistake(s.geometry, "no fluid; allowed: at least one [[fluid.region]]");
-    return;
-  }
-  if (!keys.usable(in.dimension, in.spacing)) return;
-  const bool has_low = keys.given(s.domain.low), has_high = keys.given(s.domain.high);
-  double volume = 1.0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(in.dimension); ++k) {
-    const double low = s.domain.low[k], high = s.domain.high[k];
-    volume *= high - low;
-    if (high - low > 2.0 * in.spacing || (!has_low && !has_high)) continue;  // the default has room around any fluid
-    constexpr const char* what = "the bounds are narrower than two particles; allowed: {} {} (m)";
-    if (has_high) {
-      keys.mistake(s.domain.high, fmt::format(what, "above", number_text(low + 2.0 * in.spacing)));
-    } else {
-      keys.mistake(s.domain.low, fmt::format(what, "below", number_text(high - 2.0 * in.spacing)));
-    }
-    return;
-  }
-  check_count(keys, in, volume);
 }
 
 }  // namespace
@@ -261,11 +180,12 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
   });
   keys.only_where(s.geometry, {SceneType::scene}, [&] {
     keys.add("domain.low", s.domain.low, "corner of the bounds with the smallest coordinates",
-             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side below the fluid"});
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side below fluid and walls"});
     keys.add("domain.high", s.domain.high, "corner of the bounds with the largest coordinates",
-             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above the fluid"});
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above fluid and walls"});
   });
   keys.only_where(s.geometry, {SceneType::tank, SceneType::scene}, [&] { declare_fluid(keys, s.regions); });
+  keys.only_where(s.geometry, {SceneType::scene}, [&] { declare_walls(keys, s.scene_walls); });
 }
 
 double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
@@ -273,13 +193,13 @@ double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInpu
   if (keys.usable(s.jet.speed, s.jet.width, s.jet.inlet_distance))
     return std::hypot(s.jet.speed, std::sqrt(2.0 * gravity * s.jet.inlet_distance * s.jet.width));
   if (keys.usable(s.tank.fluid_height) && s.regions.empty()) return std::sqrt(2.0 * gravity * s.tank.fluid_height);
-  if (!s.regions.empty()) return region_speed(keys, s, in, gravity);
+  if (s.geometry == SceneType::scene || !s.regions.empty()) return open_scene_speed(keys, s, in, gravity);
   return keys.usable(s.periodic_box.shear_speed) ? s.periodic_box.shear_speed : 0.0;
 }
 
 void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   derive_fluid(keys, in.dimension, s.regions);
-  if (s.geometry == SceneType::scene && !s.regions.empty()) derive_domain(keys, s, in);
+  if (s.geometry == SceneType::scene) derive_open_scene(keys, s, in);
   if (!keys.usable(s.jet.width, s.jet.angle, in.spacing)) return;
   const auto [low, high, thin, thick] = reach_of(s.jet);
   const double width = s.jet.width;
@@ -289,14 +209,14 @@ void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   if (!keys.given(s.plate.end)) s.plate.end = std::ceil(end / in.spacing - 1e-6) * in.spacing;
 }
 
-void check_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in, bool mirrored) {
+void check_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   if (!keys.usable(s.geometry)) return;
   if (keys.usable(in.dimension, in.spacing)) check_fluid(keys, in.dimension, in.spacing, room_of(keys, s), s.regions);
   switch (s.geometry) {
     case SceneType::jet:
       return check_jet(keys, s.jet, s.plate, in);
     case SceneType::tank:
-      return check_tank(keys, s.tank, s.regions, in, mirrored);
+      return check_tank(keys, s.tank, s.regions, in);
     case SceneType::periodic_box:
       return check_box(keys, s.periodic_box, in);
     case SceneType::scene:

@@ -11,24 +11,13 @@
 #include "impinge/geometry/transform.hpp"
 #include "impinge/particles/particles.hpp"
 #include "impinge/scenes/box_lattice.hpp"
+#include "impinge/scenes/shape_settings.hpp"
 
 namespace impinge {
 
-enum class RegionShape { box, circle, polygon, sphere };
-constexpr auto words(RegionShape) { return std::to_array<std::string_view>({"box", "circle", "polygon", "sphere"}); }
-
-/// One table of [[fluid.region]]. Lengths in m.
-struct FluidRegion {
+/// One table of [[fluid.region]]. Spin and gradient leave the point `about` of the shape as it is.
+struct FluidRegion : ShapeSettings {
   std::string name;
-  RegionShape shape = RegionShape::box;
-  Numbers low{}, high{};        ///< corners of a box
-  Numbers center{};             ///< of a circle or sphere
-  double radius = 0.0;          ///< of a circle or sphere
-  std::vector<Numbers> points;  ///< corners of a polygon
-  double scale = 1.0;           ///< about `about`
-  double rotate = 0.0;          ///< about `about`, in two dimensions, counter-clockwise [deg]
-  Numbers translate{};
-  Numbers about{};               ///< where scale, rotate, spin and gradient leave things as they are
   Numbers velocity{};            ///< at `about`, after `translate` [m/s]
   double spin = 0.0;             ///< solid rotation, in two dimensions, counter-clockwise [rad/s]
   std::vector<double> gradient;  ///< of the velocity, row by row, du_i/dx_j [1/s]; empty: none

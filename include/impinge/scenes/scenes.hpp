@@ -25,9 +25,17 @@ Scene<Dim> make_tank(const MethodSettings& method, const TankSettings& tank, con
 template <int Dim>
 Scene<Dim> make_periodic_box(const MethodSettings& method, const PeriodicBoxSettings& box);
 
-/// Regions of fluid and no walls.
+/// Regions of fluid between walls of any shape, or without walls.
 template <int Dim>
-Scene<Dim> make_open_scene(const MethodSettings& method, const DomainSettings& domain,
-                           const std::vector<FluidRegion>& regions);
+Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& settings);
+
+/// What is left of a region between the walls of its scene, and the volume of its particles there [m^3, m^2 in 2D].
+struct RegionVolume {
+  double expected;
+  double of_particles;
+};
+template <int Dim>
+RegionVolume volume_between_walls(const MethodSettings& method, const SceneSettings& settings,
+                                  const FluidRegion& region);
 
 }  // namespace impinge

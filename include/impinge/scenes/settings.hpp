@@ -4,6 +4,7 @@
 #include "impinge/config/key.hpp"
 #include "impinge/method/settings.hpp"
 #include "impinge/scenes/fluid_region.hpp"
+#include "impinge/scenes/wall_settings.hpp"
 
 namespace impinge {
 
@@ -49,7 +50,8 @@ struct SceneSettings {
   TankSettings tank;
   PeriodicBoxSettings periodic_box;
   DomainSettings domain;
-  std::vector<FluidRegion> regions;  ///< of a tank or a scene
+  std::vector<FluidRegion> regions;    ///< of a tank or a scene
+  std::vector<WallEntry> scene_walls;  ///< of a scene
 };
 
 /// The settings of other modules that a scene depends on.
@@ -58,6 +60,8 @@ struct SceneInputs {
   const double& spacing;  ///< dp [m]
   const KernelSettings& kernel;
   const FluidSettings& fluid;
+  const TimeSettings& time;
+  const WallSettings& walls;
 };
 
 /// Declares the tables of the scenes. `geometry` must be declared before.
@@ -70,7 +74,7 @@ double reference_speed(const Keys& keys, const SceneSettings& settings, const Sc
 /// Sets the defaults that depend on other keys: the plate's ends, from the analytic jet.
 void derive_scene(const Keys& keys, SceneSettings& settings, const SceneInputs& inputs);
 
-/// Notes where the scene's keys contradict each other or those of other modules. `mirrored`: the walls are mirrors.
-void check_scene(Keys& keys, const SceneSettings& settings, const SceneInputs& inputs, bool mirrored);
+/// Notes where the scene's keys contradict each other or those of other modules.
+void check_scene(Keys& keys, const SceneSettings& settings, const SceneInputs& inputs);
 
 }  // namespace impinge

@@ -1,0 +1,72 @@
+#pragma once
+// Shapes in a case file: the keys that regions of fluid, walls and outlets have in common.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "impinge/config/key.hpp"
+#include "impinge/geometry/outline.hpp"
+#include "impinge/geometry/shape.hpp"
+#include "impinge/geometry/transform.hpp"
+
+namespace impinge {
+
+enum class ShapeType { box, circle, polygon, sphere, arc, polyline };
+constexpr auto words(ShapeType) {
+  return std::to_array<std::string_view>({"box", "circle", "polygon", "sphere", "arc", "polyline"});
+}
+
+/// A shape and its place. Lengths in m, angles in degrees.
+struct ShapeSettings {
+  ShapeType shape = ShapeType::box;
+  Numbers low{}, high{};         ///< corners of a box
+  Numbers center{};              ///< of a circle, sphere or arc
+  double radius = 0.0;           ///< likewise
+  double from = 0.0, to = 90.0;  ///< ends of an arc, as angles from the x axis
+  std::vector<Numbers> points;   ///< corners of a polygon or polyline
+  double scale = 1.0;            ///< about `about`
+  double rotate = 0.0;           ///< about `about`, in two dimensions, counter-clockwise
+  Numbers translate{};
+  Numbers about{};  ///< where scale and rotate leave things as they are
+
+  bool is_open() const { return shape == ShapeType::arc || shape == ShapeType::polyline; }
+};
+
+/// Which shapes there may be: those with an inside, or lines without thickness, too.
+enum class ShapeKind { closed, any };
+
+/// Declares the shape's keys.
+void declare_shape(Keys& keys, ShapeSettings& shape, ShapeKind kind);
+
+/// Sets `about` where it is not given. `dimension`: of space.
+void derive_shape(const Keys& keys, int dimension, ShapeSettings& shape);
+
+/// Notes a shape that is not of the kind, and a turn in three dimensions.
+void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings& shape);
+
+/// True where all that the shape and its place depend on has allowed values.
+bool is_usable(const Keys& keys, const ShapeSettings& shape);
+
+/// The first components.
+template <int Dim>
+Vector<Dim> vector_of(const Numbers& x) {
+  Vector<Dim> result;
+  for (int k = 0; k < Dim; ++k) result[k] = x[static_cast<std::size_t>(k)];
+  return result;
+}
+
+/// The shape with an inside, scaled but not turned or moved; nothing, and what is wrong with its numbers, if there is
+/// no such shape in Dim dimensions.
+template <int Dim>
+std::shared_ptr<const Shape<Dim>> scaled_shape(const ShapeSettings& shape, std::vector<std::string>& mistakes);
+
+/// What turns and moves it.
+template <int Dim>
+Transform<Dim> placement_of(const ShapeSettings& shape);
+
+/// The line or outline in its place; nothing, and what is wrong with its numbers, if there is none.
+std::optional<Outline> outline_of(const ShapeSettings& shape, std::vector<std::string>& mistakes);
+
+}  // namespace impinge
