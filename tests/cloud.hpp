@@ -32,7 +32,7 @@ MirrorWalls<Dim> mirrors_of(Edge edge, const Box<Dim>& box, double reach, double
     high.normal[k] = -1.0;
     faces.insert(faces.end(), {low, high});
   }
-  return {faces, {}, {}, reach, spacing};
+  return {faces, {}, reach, spacing};
 }
 
 /// A lattice of spacing 1 in the box [0, extent), each particle displaced by up to `jitter` along every axis; velocity

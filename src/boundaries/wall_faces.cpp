@@ -70,9 +70,9 @@ Reflection<Dim> product(const Reflection<Dim>& outer, const Reflection<Dim>& inn
 }
 
 template <int Dim>
-WallFaces<Dim>::WallFaces(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls,
-                          std::vector<Motion<Dim>> motions, double reach, double spacing)
-    : motions_(std::move(motions)), reach_(reach), spacing_(spacing) {
+WallFaces<Dim>::WallFaces(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, double reach,
+                          double spacing)
+    : reach_(reach), spacing_(spacing) {
   for (const Face<Dim>& plane : planes) {
     planes_.push_back(count());
     faces_.emplace_back();
@@ -97,16 +97,22 @@ void WallFaces<3>::find_sectors() {}
 
 template <>
 void WallFaces<2>::add_wall(const Wall& wall) {
+  int motion = -1;
+  if (wall.motion) {
+    const auto found = std::ranges::find(motions_, wall.motion);
+    motion = static_cast<int>(found - motions_.begin());
+    if (found == motions_.end()) motions_.push_back(wall.motion);
+  }
   for (const OutlineEdge& whole : wall.outline.edges()) {
     for (const OutlineEdge& edge : cut_sharp_arc(whole, spacing_)) {
       const bool closed_arc = !edge.straight() && std::abs(edge.sweep) > 2.0 * pi - same_angle;
-      const int begin = closed_arc ? -1 : add_vertex(edge.begin, wall.motion);
-      const int end = closed_arc ? -1 : add_vertex(edge.end, wall.motion);
+      const int begin = closed_arc ? -1 : add_vertex(edge.begin, motion);
+      const int end = closed_arc ? -1 : add_vertex(edge.end, motion);
       const auto add = [&](bool right) {
         FaceData face;
         face.point = right ? edge.end : edge.begin;
         face.vertex = right ? std::array{end, begin} : std::array{begin, end};
-        face.motion = wall.motion;
+        face.motion = motion;
         face.slip = wall.slip;
         if (edge.straight()) {
           const Vector<2> left = turned_left(edge.end - edge.begin);
@@ -198,8 +204,8 @@ void WallFaces<Dim>::move_to(double time, double velocity_time) {
   old_pose_ = pose_;
   velocity_pose_.clear();
   for (std::size_t m = 0; m < motions_.size(); ++m) {
-    pose_[m] = motions_[m](time);
-    velocity_pose_.push_back(motions_[m](velocity_time));
+    pose_[m] = (*motions_[m])(time);
+    velocity_pose_.push_back((*motions_[m])(velocity_time));
   }
   if (any_moves()) {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -224,9 +230,26 @@ void WallFaces<Dim>::move_to(double time, double velocity_time) {
 }
 
 template <int Dim>
-int WallFaces<Dim>::common_motion() const {
-  const int motion = faces_.empty() ? -1 : faces_.front().motion;
-  return std::ranges::all_of(faces_, [&](const FaceData& face) { return face.motion == motion; }) ? motion : -1;
+const Motion<Dim>* WallFaces<Dim>::common_motion() const {
+  const bool is_common =
+      !motions_.empty() && std::ranges::all_of(faces_, [](const FaceData& face) { return face.motion == 0; });
+  return is_common ? motions_.front().get() : nullptr;
+}
+
+template <int Dim>
+double WallFaces<Dim>::largest_speed() const {
+  double largest = 0.0;
+  for (int f = 0; f < count(); ++f) {
+    if (!moves(f)) continue;
+    for (int end = 0; end < 2 && has_ends(f); ++end)
+      largest = std::max(largest, norm(velocity(f, vertex(f, end).place)));
+    if (is_flat(f)) continue;
+    const Pose<Dim>& pose = velocity_pose_[static_cast<std::size_t>(at(f).motion)];
+    double rate = 0.0;
+    for (const Vector<Dim>& row : pose.spin.row) rate = std::max(rate, norm(row));
+    largest = std::max(largest, norm(pose.velocity_at(at(f).center)) + rate * at(f).radius);
+  }
+  return largest;
 }
 
 // Lists the faces of each cell: those that reach into the cell, made larger by twice the reach.

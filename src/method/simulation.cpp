@@ -28,8 +28,8 @@ State<Dim> make_state(MPI_Comm comm, const MethodSettings& settings, const Scene
                               far, settings.walls.model == WallModel::mirror);
   return {.particles = {},
           .decomposition = std::move(decomposition),
-          .walls = MirrorWalls<Dim>(scene.mirrors, scene.walls, scene.motions,
-                                    settings.kernel.largest() * settings.particles.spacing, settings.particles.spacing),
+          .walls = MirrorWalls<Dim>(scene.mirrors, scene.walls, settings.kernel.largest() * settings.particles.spacing,
+                                    settings.particles.spacing),
           .search = std::move(search),
           .wall_normal = {},
           .asymmetry = {},
@@ -238,36 +238,31 @@ void Simulation<Dim>::move_walls(double time, double velocity_time) {
 
 template <int Dim>
 Vector<Dim> Simulation<Dim>::wall_point_at(std::int64_t id, double time) const {
-  const WallPoint& point = scene_.wall_points[static_cast<std::size_t>(id)];
-  const int motion = scene_.walls[static_cast<std::size_t>(point.wall)].motion;
-  Vector<Dim> position;
-  for (int k = 0; k < 2; ++k) position[k] = point.position[k];
-  return motion < 0 ? position : scene_.motions[static_cast<std::size_t>(motion)](time).of_position(position);
+  if constexpr (Dim == 2) {
+    const WallPoint& point = scene_.wall_points[static_cast<std::size_t>(id)];
+    const Wall& wall = scene_.walls[static_cast<std::size_t>(point.wall)];
+    return wall.motion ? (*wall.motion)(time).of_position(point.position) : point.position;
+  } else {
+    return {};
+  }
 }
 
 // Wall particles of walls that move to where these are at a time.
 template <int Dim>
 void Simulation<Dim>::place_wall_points(double time) {
-  if (scene_.motions.empty()) return;
+  if (!state_.walls.any_moves()) return;
   for (std::size_t i = 0; i < state_.owned(); ++i)
     if (is_wall_point(i)) state_.particles.position[i] = wall_point_at(state_.particles.id[i], time);
-  report_.wall_speed = 0.0;
-  for (std::size_t k = 0; k < scene_.wall_points.size(); ++k) {
-    const int motion = scene_.walls[static_cast<std::size_t>(scene_.wall_points[k].wall)].motion;
-    if (motion < 0) continue;
-    const Pose<Dim> pose = scene_.motions[static_cast<std::size_t>(motion)](time);
-    const Vector<Dim> place = wall_point_at(static_cast<std::int64_t>(k), time);
-    report_.wall_speed = std::max(report_.wall_speed, norm(pose.velocity_at(place)));
-  }
+  report_.wall_speed = state_.walls.faces().largest_speed();
 }
 
 // The largest speed of the fluid relative to the walls, where these move as one body: a tank at constant velocity is
 // one at rest. Collective.
 template <int Dim>
 double Simulation<Dim>::flow_speed() const {
-  const int motion = state_.walls.faces().common_motion();
-  if (motion < 0) return report_.max_speed;
-  const Pose<Dim> pose = scene_.motions[static_cast<std::size_t>(motion)](report_.time);
+  const Motion<Dim>* const motion = state_.walls.faces().common_motion();
+  if (!motion) return report_.max_speed;
+  const Pose<Dim> pose = (*motion)(report_.time);
   double largest = 0.0;
   for (std::size_t i = 0; i < state_.owned(); ++i)
     if (state_.moves(i))

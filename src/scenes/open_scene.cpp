@@ -49,7 +49,7 @@ std::vector<WallPoint> points_at(const Scene<2>& scene, double time) {
   for (WallPoint& point : points) {
     const Wall& wall = scene.walls[static_cast<std::size_t>(point.wall)];
     if (!wall.motion) continue;
-    const Pose<2> pose = wall.motion(time);
+    const Pose<2> pose = (*wall.motion)(time);
     point.position = pose.of_position(point.position);
     point.normal = pose.of_direction(point.normal);
   }

@@ -26,7 +26,7 @@ void declare_walls(Keys& keys, std::vector<WallEntry>& walls) {
               "where fluid may be: outside or inside a shape with an inside, to the left or the right of the way along "
               "a line, or on both sides",
               {.fallback = "outside; of a line both"});
-    inner.add("slip", wall.slip, "fluid slips along the wall; false: a viscous fluid sticks to it");
+    inner.add("slip", wall.slip, "a viscous fluid slips along the wall; false: it sticks to it");
   });
 }
 

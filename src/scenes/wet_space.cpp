@@ -21,7 +21,7 @@ double distance(const Box<2>& box, const Vector<2>& point) {
 
 Outline outline_at(const Wall& wall, double time) {
   if (!wall.motion) return wall.outline;
-  const Pose<2> pose = wall.motion(time);
+  const Pose<2> pose = (*wall.motion)(time);
   return transformed(wall.outline, {.rotation = pose.rotation, .translate = pose.shift});
 }
 

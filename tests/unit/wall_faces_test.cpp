@@ -94,7 +94,7 @@ std::vector<Vector<2>> points_in(const Outline& outline, double size, unsigned s
   return points_where([&](const Vector<2>& x) { return outline.distance(x) < -0.2; }, size, seed);
 }
 
-MirrorWalls<2> walls_of(std::vector<Wall> walls) { return {{}, walls, {}, reach, 1.0}; }
+MirrorWalls<2> walls_of(std::vector<Wall> walls) { return {{}, walls, reach, 1.0}; }
 
 /// Of the particles farther than `margin` from the line that bounds the cloud elsewhere.
 double largest_asymmetry(const Cloud& cloud) {
@@ -115,7 +115,7 @@ TEST(SpecularPairs, OfABoxAreTheImagesAtItsPlanes) {
                                     {{{11.0, 0.0}}, {{-1.0, 0.0}}},
                                     {{{0.0, 0.0}}, {{0.0, 1.0}}},
                                     {{{0.0, 9.0}}, {{0.0, -1.0}}}};
-  const Cloud by_planes(points, {planes, {}, {}, reach, 1.0});
+  const Cloud by_planes(points, {planes, {}, reach, 1.0});
   const Cloud by_faces(points, walls_of({wet_inside(box)}));
   const auto expected = by_planes.density(), density = by_faces.density();
   ASSERT_EQ(density.size(), expected.size());
@@ -240,7 +240,7 @@ TEST(Walls, LetNothingPass) {
       polygon({{{-9.0, 0.0}}, {{0.0, 0.0}}, {{0.0, 4.0}}, {{9.0, 4.0}}, {{7.0, 12.0}}, {{-9.0, 12.0}}});
   const Outline island = circle({{-4.0, 6.0}}, 3.5);
   const Outline sheet = polyline({{{2.0, 6.0}}, {{5.0, 9.0}}, {{2.0, 11.0}}});
-  const MirrorWalls<2> walls({}, {wet_inside(bowl), wet_outside(island), plate(sheet)}, {}, reach, 1.0);
+  const MirrorWalls<2> walls({}, {wet_inside(bowl), wet_outside(island), plate(sheet)}, reach, 1.0);
   const auto is_fluid = [&](const Vector<2>& x) { return bowl.contains(x) && !island.contains(x); };
   std::mt19937 random(8);
   std::uniform_real_distribution<double> place(-9.0, 12.0), way(-1.5, 1.5);
@@ -269,7 +269,6 @@ TEST(Walls, LetNothingPass) {
 TEST(Walls, ThatMoveTakeTheirImagesAndParticlesAlong) {
   const Outline box = polygon({{{-4.0, -4.0}}, {{4.0, -4.0}}, {{4.0, 4.0}}, {{-4.0, 4.0}}});
   Wall wall = wet_inside(box);
-  wall.motion = 0;
   constexpr double omega = 0.7;
   const Vector<2> drift{{2.0, -1.0}};
   const Motion<2> motion = [&](double t) {
@@ -283,7 +282,8 @@ TEST(Walls, ThatMoveTakeTheirImagesAndParticlesAlong) {
     pose.acceleration = -1.0 * (pose.bend * pose.shift);
     return pose;
   };
-  MirrorWalls<2> walls({}, {wall}, {motion}, reach, 1.0);
+  wall.motion = std::make_shared<const Motion<2>>(motion);
+  MirrorWalls<2> walls({}, {wall}, reach, 1.0);
   constexpr double t = 0.3;
   walls.move_to(t, t);
   const Pose<2> pose = motion(t);

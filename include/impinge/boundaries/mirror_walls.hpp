@@ -32,9 +32,8 @@ class MirrorWalls final : public PairFilter<Dim> {
   MirrorWalls() = default;
 
   /// `reach`: largest radius of a sum over neighbours [m]; `spacing`: dp [m]. Planes that meet do so at right angles.
-  MirrorWalls(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls,
-              const std::vector<Motion<Dim>>& motions, double reach, double spacing)
-      : faces_(planes, walls, motions, reach, spacing), reach_(reach), spacing_(spacing) {}
+  MirrorWalls(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, double reach, double spacing)
+      : faces_(planes, walls, reach, spacing), reach_(reach), spacing_(spacing) {}
 
   bool empty() const { return faces_.count() == 0; }
   bool any_moves() const { return faces_.any_moves(); }

@@ -18,7 +18,6 @@ struct Scene {
 
   std::vector<Face<Dim>> mirrors;      ///< walls by images; empty where walls are particles
   std::vector<Wall> walls;             ///< likewise, of finite size; in two dimensions
-  std::vector<Motion<Dim>> motions;    ///< of these walls
   std::vector<WallPoint> wall_points;  ///< of these walls; the wall particle with the id k stands on point k
   std::vector<Inlet<Dim>> inlets;      ///< as they stand at the start
   std::vector<Outlet<Dim>> outlets;

@@ -1,6 +1,7 @@
 #pragma once
 // Walls.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,10 @@ constexpr int wall_layers = 4;
 struct Wall {
   std::string name;
   Outline outline;
-  bool wet_right = true;  ///< fluid on the right of the way along the outline: outside a closed one
-  bool wet_left = false;  ///< likewise on the left
-  bool slip = false;      ///< a viscous fluid slips along it, too
-  int motion = -1;        ///< number of its motion; -1: at rest
+  bool wet_right = true;                      ///< fluid on the right of the way along the outline: outside a closed one
+  bool wet_left = false;                      ///< likewise on the left
+  bool slip = false;                          ///< a viscous fluid slips along it, too
+  std::shared_ptr<const Motion<2>> motion{};  ///< none: at rest. Walls that move as one body share it
 };
 
 /// A point of a wall's surface where the pressure is measured.

@@ -72,13 +72,14 @@ class WallFaces {
   WallFaces() = default;
 
   /// `reach`: largest radius of a sum over neighbours [m]; `spacing`: dp [m].
-  WallFaces(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, std::vector<Motion<Dim>> motions,
-            double reach, double spacing);
+  WallFaces(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, double reach, double spacing);
 
   /// Moves the walls to where they are at a time [s]. Their velocity is that at another time.
   void move_to(double time, double velocity_time);
-  /// The motion that all walls share; -1: they are at rest or move apart.
-  int common_motion() const;
+  /// The motion that all walls share; none where they are at rest or move apart.
+  const Motion<Dim>* common_motion() const;
+  /// Of the walls' ends and the farthest points of their circles [m/s].
+  double largest_speed() const;
   bool any_moves() const { return !motions_.empty(); }
 
   int count() const { return static_cast<int>(faces_.size()); }
@@ -175,7 +176,7 @@ class WallFaces {
   std::vector<FaceData> rest_, faces_;  // in the rest pose; as they stand
   std::vector<Vertex> rest_vertices_, vertices_;
   std::vector<int> vertex_motion_;
-  std::vector<Motion<Dim>> motions_;
+  std::vector<std::shared_ptr<const Motion<Dim>>> motions_;
   std::vector<Pose<Dim>> pose_, old_pose_;  // by motion
   std::vector<Pose<Dim>> velocity_pose_;
   double reach_ = 0.0;

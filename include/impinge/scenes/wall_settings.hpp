@@ -19,7 +19,7 @@ constexpr auto words(Wet) { return std::to_array<std::string_view>({"outside", "
 struct WallEntry : ShapeSettings {
   std::string name;
   Wet wet = Wet::outside;
-  bool slip = true;  ///< false: a viscous fluid sticks to it
+  bool slip = false;  ///< a viscous fluid slips along it, too
 };
 
 /// Declares [[wall]].
