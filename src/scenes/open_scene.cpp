@@ -65,7 +65,7 @@ Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& se
   scene.bounds = {vector_of<Dim>(settings.domain.low), vector_of<Dim>(settings.domain.high)};
   std::vector<WallPoint> points;  // in their places at the start
   if constexpr (Dim == 2) {
-    scene.walls = walls_of(settings.scene_walls);
+    scene.walls = walls_of(settings.scene_walls, settings.motions);
     scene.wall_points = wall_points(scene.walls, spacing);
     points = points_at(scene, 0.0);
   }
@@ -103,7 +103,7 @@ RegionVolume volume_between_walls(const MethodSettings& method, const SceneSetti
   const PlacedRegion<Dim> placed_region(region, spacing);
   if constexpr (Dim == 2) {
     if (!settings.scene_walls.empty()) {
-      const WetSpace wet(walls_of(settings.scene_walls), 0.0, spacing);
+      const WetSpace wet(walls_of(settings.scene_walls, settings.motions), 0.0, spacing);
       const auto volume = [&](double step, double gap) {
         const PlacedRegion<2> lattice(region, step);
         std::int64_t count = 0;
