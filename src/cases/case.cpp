@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -88,12 +89,16 @@ void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
 /// Names and values of the keys that a restart cannot change.
 using FixedValues = std::vector<std::pair<std::string, std::string>>;
 
-Case parse(const std::vector<NamedText>& files, const std::vector<std::string>& settings, FixedValues& fixed) {
+Case parse(const std::vector<NamedText>& all, const std::vector<std::string>& settings, FixedValues& fixed) {
+  // The case file itself may have any name.
+  const auto first_table = std::ranges::find_if(all.begin() + 1, all.end(), is_named_table);
+  const std::vector<NamedText> files(all.begin(), first_table), tables(first_table, all.end());
   Case c;
   Keys keys(c.dimension);
   declare(keys, c);
   if (read_files(keys, files, settings)) {
     const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid, c.time, c.walls};
+    take_motion_tables(keys, tables, c.motions);
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }
@@ -112,7 +117,9 @@ std::vector<NamedText> load_case_files(const std::string& path) {
   Case c;
   Keys keys(c.dimension);
   declare(keys, c);
-  return load_files(path, keys);
+  std::vector<NamedText> files = load_files(path, keys);
+  load_named_tables(files, "motion", "file");
+  return files;
 }
 
 Case parse_case(const std::vector<NamedText>& files, const std::vector<std::string>& settings) {

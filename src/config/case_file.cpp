@@ -454,6 +454,32 @@ std::vector<NamedText> load_files(const std::string& path, Keys& keys) {
   }
 }
 
+void load_named_tables(std::vector<NamedText>& files, std::string_view list, std::string_view key) {
+  std::vector<NamedText> tables;
+  for (const auto& [name, text] : files) {
+    try {
+      const toml::table table = parse_toml(text, name);
+      const toml::array* entries = table.get(list) ? table.get(list)->as_array() : nullptr;
+      for (std::size_t k = 0; entries && k < entries->size(); ++k) {
+        const toml::table* entry = entries->get(k)->as_table();
+        const toml::node* value = entry ? entry->get(key) : nullptr;
+        if (!value || !value->is_string()) continue;
+        const fs::path path = fs::path(name).parent_path() / value->as_string()->get();
+        std::error_code error;
+        std::string reason;
+        if (!is_named_table({path.string(), ""}) || !fs::is_regular_file(path, error)) continue;
+        if (std::ranges::find(tables, path.string(), &NamedText::first) != tables.end()) continue;
+        if (auto content = read_text(path, reason)) tables.emplace_back(path.string(), std::move(*content));
+      }
+    } catch (const toml::parse_error&) {
+      continue;  // read_files says what is wrong
+    }
+  }
+  files.insert(files.end(), std::make_move_iterator(tables.begin()), std::make_move_iterator(tables.end()));
+}
+
+bool is_named_table(const NamedText& file) { return file.first.ends_with(".csv"); }
+
 bool read_files(Keys& keys, const std::vector<NamedText>& files, const std::vector<std::string>& settings) {
   Reader reader(keys);
   for (const NamedText& file : files) reader.add_file(file);

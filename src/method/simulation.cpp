@@ -56,8 +56,29 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const MethodSettings& settings, Scene
   state_.decomposition.partition(state_.particles);
   redistribute();
   find_neighbours();
+  if (scene_.settles) settle();
   measure_totals();
   report_.in = report_.fluid;
+}
+
+// Particles drift to even distances, as they do in a step, but without flow.
+template <int Dim>
+void Simulation<Dim>::settle() {
+  constexpr int passes = 60;
+  constexpr double way = 0.25;  // over the asymmetry [dp]
+  const ShiftingSettings shifting{.coefficient = 1.0, .least_distance = 0.9, .correct_velocity = true};
+  const double spacing = settings_.particles.spacing;
+  for (int pass = 0; pass < passes; ++pass) {
+    const Shift<Dim> shift =
+        shift_of(shifting, way * spacing, 1.0, spacing, projection_.lattice().number_density, state_);
+    for (std::size_t i = 0; i < shift.displacement.size(); ++i) {
+      state_.particles.position[i] += shift.displacement[i];
+      state_.particles.velocity[i] += shift.velocity_change[i];
+    }
+    state_.walls.confine([&](int i) { return state_.search.searched_position(i); }, state_.particles);
+    redistribute();
+    find_neighbours();
+  }
 }
 
 template <int Dim>

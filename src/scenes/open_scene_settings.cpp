@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "impinge/scenes/wall_crossing.hpp"
 #include "impinge/scenes/wet_space.hpp"
 
 namespace impinge {
@@ -43,18 +44,96 @@ void add_fluid(const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
   }
 }
 
-/// The walls whose keys are usable, in two dimensions.
-std::vector<Wall> sound_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  std::vector<Wall> walls;
+/// A wall that exists, and where it comes from.
+struct SoundWall {
+  const WallEntry* entry;
+  Wall wall;
+};
+
+/// The walls that exist, in two dimensions.
+std::vector<SoundWall> sound_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  std::vector<SoundWall> walls;
   if (!keys.usable(in.dimension) || in.dimension != 2) return walls;
   for (const WallEntry& entry : s.scene_walls)
-    if (is_usable(keys, entry))
-      if (auto wall = wall_of(entry)) walls.push_back(std::move(*wall));
+    if (is_usable(keys, entry, s.motions))
+      if (auto wall = wall_of(entry, s.motions)) walls.push_back({&entry, std::move(*wall)});
   return walls;
 }
 
+/// Times that tell a wall's motion; 0 alone where it does not move.
+std::vector<double> times_of(const Keys& keys, const WallEntry& wall, const SceneSettings& s, const SceneInputs& in,
+                             std::size_t most) {
+  const MotionEntry* motion = motion_named(wall.motion, s.motions);
+  return motion && keys.usable(in.time.end) ? times_of(*motion, in.time.end, most) : std::vector{0.0};
+}
+
+constexpr std::size_t many_times = 4000;  // for speeds
+constexpr std::size_t some_times = 400;   // for places
+
+/// What a wall moves over.
+Bounds bounds_of(const Keys& keys, const SoundWall& wall, const SceneSettings& s, const SceneInputs& in) {
+  Bounds bounds;
+  for (const double time : times_of(keys, *wall.entry, s, in, some_times))
+    bounds.add(outline_at(wall.wall, time).bounds());
+  return bounds;
+}
+
 void add_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
-  for (const Wall& wall : sound_walls(keys, s, in)) bounds.add(outline_at(wall, 0.0).bounds());
+  for (const SoundWall& wall : sound_walls(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
+}
+
+/// The largest speed of a wall's points, and when it is so.
+struct FastestMoment {
+  double speed = 0.0, time = 0.0;
+};
+
+FastestMoment fastest_moment(const Wall& wall, const std::vector<double>& times) {
+  FastestMoment fastest;
+  if (!wall.motion) return fastest;
+  std::vector<Vector<2>> points;
+  for (const OutlineEdge& edge : wall.outline.edges())
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
+      if (!edge.straight() || share == 0.0 || share == 1.0) points.push_back(edge.at(share));
+  for (const double time : times) {
+    const Pose<2> pose = (*wall.motion)(time);
+    for (const Vector<2>& point : points) {
+      const double speed = norm(pose.velocity_at(pose.of_position(point)));
+      if (speed > fastest.speed) fastest = {speed, time};
+    }
+  }
+  return fastest;
+}
+
+/// Notes walls that are faster than particles may be, and walls that move through others.
+void check_motion(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  const std::vector<SoundWall> walls = sound_walls(keys, s, in);
+  if (!keys.usable(in.time.end)) return;
+  for (std::size_t b = 0; b < walls.size(); ++b) {
+    const auto& [entry, wall] = walls[b];
+    const std::vector<double> times = times_of(keys, *entry, s, in, some_times);
+    if (keys.usable(in.time.max_speed)) {
+      const auto [speed, time] = fastest_moment(wall, times_of(keys, *entry, s, in, many_times));
+      if (speed > in.time.max_speed)
+        keys.mistake(
+            entry->motion,
+            fmt::format("moves the wall at {:.4g} m/s at t = {:.4g} s; allowed: up to time.max_speed, {} (m/s)", speed,
+                        time, number_text(in.time.max_speed)));
+    }
+    for (std::size_t a = 0; a < b; ++a) {
+      if (walls[a].entry->motion == entry->motion) continue;
+      std::vector<double> of_both = times_of(keys, *walls[a].entry, s, in, some_times);
+      of_both.insert(of_both.end(), times.begin(), times.end());
+      std::ranges::sort(of_both);
+      const auto crossing = first_crossing(wall, walls[a].wall, of_both, in.spacing);
+      if (!crossing) continue;
+      const auto& [mover, other] =
+          entry->motion != no_motion ? std::pair(entry, walls[a].entry) : std::pair(walls[a].entry, entry);
+      keys.mistake(mover->motion,
+                   fmt::format("the wall \"{}\" moves through the wall \"{}\", at t = {:.4g} s at ({:.4g}, {:.4g}) m; "
+                               "it may touch it and slide along",
+                               mover->name, other->name, crossing->time, crossing->place[0], crossing->place[1]));
+    }
+  }
 }
 
 void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
@@ -93,16 +172,13 @@ void check_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
 
 /// Notes walls that reach out of the bounds: their particles would be lost.
 void check_walls_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  for (const WallEntry& entry : s.scene_walls) {
-    if (!is_usable(keys, entry)) continue;
-    const auto wall = wall_of(entry);
-    if (!wall) continue;
-    const Box<2> box = outline_at(*wall, 0.0).bounds();
+  for (const SoundWall& wall : sound_walls(keys, s, in)) {
+    const Box<3> box = bounds_of(keys, wall, s, in).box();
     for (int k = 0; k < 2; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       const double low = s.domain.low[axis] + in.spacing, high = s.domain.high[axis] - in.spacing;
       if (box.low[k] >= low && box.high[k] <= high) continue;
-      keys.mistake(entry.shape,
+      keys.mistake(wall.entry->shape,
                    fmt::format("the wall reaches from {0} = {1:.6g} to {2:.6g} m, nearer to the bounds than "
                                "a spacing or out of them; allowed: [{3:.6g}, {4:.6g}] (m), and domain",
                                k == 0 ? "x" : "y", box.low[k], box.high[k], low, high));
@@ -124,6 +200,8 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
     fastest = std::max(
         fastest, std::hypot(region.velocity[0], region.velocity[1], region.velocity[2]) + rate * fluid.longest_side());
   }
+  for (const SoundWall& wall : sound_walls(keys, s, in))
+    fastest = std::max(fastest, fastest_moment(wall.wall, times_of(keys, *wall.entry, s, in, many_times)).speed);
   Bounds all = fluid;
   add_walls(keys, s, in, all);
   const double side = all.longest_side();
@@ -132,6 +210,7 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
 }
 
 void derive_open_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
+  derive_motions(keys, s.motions);
   derive_walls(keys, s.scene_walls);
   derive_domain(keys, s, in);
 }
@@ -144,7 +223,11 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     keys.mistake(s.scene_walls, "walls of any shape are no particles; allowed: walls.model = \"mirror\"");
   if (!keys.usable(in.dimension, in.spacing)) return;
   const bool plane_walls = has_walls && in.dimension == 2;
-  if (plane_walls) check_walls(keys, in.spacing, s.scene_walls);
+  if (keys.usable(s.motions)) check_motions(keys, s.motions);
+  if (plane_walls) {
+    check_walls(keys, in.spacing, s.scene_walls, s.motions);
+    check_motion(keys, s, in);
+  }
   if (!keys.usable(s.regions, s.domain.low, s.domain.high)) return;
   if (s.regions.empty()) {
     keys.mistake(s.geometry, "no fluid; allowed: at least one [[fluid.region]]");

@@ -185,7 +185,10 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
              {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above fluid and walls"});
   });
   keys.only_where(s.geometry, {SceneType::tank, SceneType::scene}, [&] { declare_fluid(keys, s.regions); });
-  keys.only_where(s.geometry, {SceneType::scene}, [&] { declare_walls(keys, s.scene_walls); });
+  keys.only_where(s.geometry, {SceneType::scene}, [&] {
+    declare_walls(keys, s.scene_walls);
+    declare_motions(keys, s.motions);
+  });
 }
 
 double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "impinge/geometry/transform.hpp"
 
@@ -36,6 +37,29 @@ bool WetSpace::is_behind(const Part& line, const Vector<2>& point) const {
   const bool at_end = (near.edge == 0 && share == 0.0) || (near.edge + 1 == edges.size() && share == 1.0);
   if (at_end || near.distance > reach_) return false;
   return dot(point - near.point, edges[near.edge].normal(share)) > 0.0 ? !line.wet_right : !line.wet_left;
+}
+
+double WetSpace::depth(const Vector<2>& point) const {
+  bool has_inside = false;
+  double least = std::numeric_limits<double>::infinity(), inside = -std::numeric_limits<double>::infinity();
+  for (const Part& part : parts_) {
+    const bool closed = part.outline.closed();
+    const bool inside_only = closed && !part.wet_right;
+    has_inside |= inside_only;
+    if (!inside_only && distance(part.outline.bounds(), point) > reach_) {
+      least = std::min(least, reach_);
+      continue;
+    }
+    const double distance = part.outline.distance(point);
+    if (inside_only) {
+      inside = std::max(inside, -distance);
+    } else if (closed) {
+      least = std::min(least, part.wet_left ? std::abs(distance) : distance);
+    } else {
+      least = std::min(least, is_behind(part, point) ? -distance : distance);
+    }
+  }
+  return has_inside ? std::min(inside, least) : least;
 }
 
 bool WetSpace::contains(const Vector<2>& point, double margin) const {

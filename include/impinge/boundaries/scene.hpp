@@ -19,7 +19,9 @@ struct Scene {
   std::vector<Face<Dim>> mirrors;      ///< walls by images; empty where walls are particles
   std::vector<Wall> walls;             ///< likewise, of finite size; in two dimensions
   std::vector<WallPoint> wall_points;  ///< of these walls; the wall particle with the id k stands on point k
-  std::vector<Inlet<Dim>> inlets;      ///< as they stand at the start
+  bool settles = false;  ///< the particles are no lattice at the walls: they are shifted before the first step
+
+  std::vector<Inlet<Dim>> inlets;  ///< as they stand at the start
   std::vector<Outlet<Dim>> outlets;
   std::int64_t next_id = 0;  ///< of the first particle that enters
 

@@ -31,9 +31,9 @@ struct Case : MethodSettings, SceneSettings {
   std::string resolved_text;  ///< the whole case as one TOML text, every key with its value
 };
 
-/// The case file followed by the files it includes (key `include`, relative to the including file), as texts.
-/// Reads the disk; not collective. Throws InputError (missing file, include cycle) that also lists what else is wrong
-/// in the files it could read.
+/// The case file followed by the files it includes (key `include`, relative to the including file) and by the .csv
+/// files of its motions, as texts. Reads the disk; not collective. Throws InputError (missing file, include cycle) that
+/// also lists what else is wrong in the files it could read.
 std::vector<NamedText> load_case_files(const std::string& path);
 
 /// Parses and validates; later files are defaults for earlier ones, `settings` ("key=value") override all.

@@ -26,6 +26,13 @@ std::string path_problem(std::string_view path);
 /// in the files it could read, by their `keys`.
 std::vector<NamedText> load_files(const std::string& path, Keys& keys);
 
+/// Appends the .csv files that the tables of a list name by a key, relative to the file that names them, behind the
+/// files. What cannot be read is left out. Reads the disk; not collective.
+void load_named_tables(std::vector<NamedText>& files, std::string_view list, std::string_view key);
+
+/// True for what load_named_tables appended.
+bool is_named_table(const NamedText& file);
+
 /// Reads the files and the `settings` ("key=value") into the keys' settings and checks each value by itself; mistakes
 /// stay in `keys`. Earlier files override later ones, a later setting overrides all. A list of tables is taken whole,
 /// from one file; settings can change the keys of its tables. False if a file is not TOML: what is absent is no mistake

@@ -61,6 +61,7 @@ class Simulation {
   double imbalance() const { return state_.decomposition.imbalance(state_.particles); }
 
  private:
+  void settle();
   void try_step(double target);
   void pass_boundaries();
   void move_walls(double time, double velocity_time);

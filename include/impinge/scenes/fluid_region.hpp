@@ -45,9 +45,7 @@ class PlacedRegion {
   /// The region must have passed check_fluid. `spacing`: dp [m].
   PlacedRegion(const FluidRegion& region, double spacing);
 
-  bool contains(const Vector<Dim>& point, double depth = 0.0) const {
-    return shape_->distance(placement_.origin_of(point)) < -depth;
-  }
+  bool contains(const Vector<Dim>& point, double depth = 0.0) const { return distance(point) < -depth; }
   /// The smallest axis-aligned box around it, or a larger one where it is turned [m].
   Box<Dim> bounds() const;
   /// [m^2] in two dimensions, [m^3] in three.
@@ -59,6 +57,10 @@ class PlacedRegion {
 
   /// Lattice points, those outside the region among them.
   std::int64_t points() const { return lattice_.count(); }
+  /// The place of a lattice point, inside the region or not.
+  Vector<Dim> place(std::int64_t k) const { return placement_(lattice_.point(k)); }
+  /// Distance to the region's surface, negative inside [m].
+  double distance(const Vector<Dim>& point) const { return shape_->distance(placement_.origin_of(point)); }
   /// The place of a lattice point; false outside the region.
   bool point(std::int64_t k, Vector<Dim>& position) const;
 

@@ -52,6 +52,7 @@ struct SceneSettings {
   DomainSettings domain;
   std::vector<FluidRegion> regions;    ///< of a tank or a scene
   std::vector<WallEntry> scene_walls;  ///< of a scene
+  std::vector<MotionEntry> motions;    ///< of its walls
 };
 
 /// The settings of other modules that a scene depends on.

@@ -7,6 +7,7 @@
 
 #include "impinge/boundaries/wall.hpp"
 #include "impinge/config/key.hpp"
+#include "impinge/scenes/motion_settings.hpp"
 #include "impinge/scenes/shape_settings.hpp"
 
 namespace impinge {
@@ -19,7 +20,8 @@ constexpr auto words(Wet) { return std::to_array<std::string_view>({"outside", "
 struct WallEntry : ShapeSettings {
   std::string name;
   Wet wet = Wet::outside;
-  bool slip = false;  ///< a viscous fluid slips along it, too
+  bool slip = false;                            ///< a viscous fluid slips along it, too
+  std::string motion = std::string(no_motion);  ///< name of a [[motion]]
 };
 
 /// Declares [[wall]].
@@ -28,14 +30,22 @@ void declare_walls(Keys& keys, std::vector<WallEntry>& walls);
 /// Sets names, wet sides and fixed points that are not given.
 void derive_walls(const Keys& keys, std::vector<WallEntry>& walls);
 
-/// Notes shapes that do not exist, wet sides that a shape has not, names that are used twice, and walls of too many
-/// particles. `spacing`: dp [m]. The keys of the dimension, 2, and of `spacing` are usable.
-void check_walls(Keys& keys, double spacing, const std::vector<WallEntry>& walls);
+/// Notes shapes that do not exist, wet sides that a shape has not, names that are used twice, motions that do not
+/// exist, and walls of too many particles. `spacing`: dp [m]. The keys of the dimension, 2, and of `spacing` are
+/// usable.
+void check_walls(Keys& keys, double spacing, const std::vector<WallEntry>& walls,
+                 const std::vector<MotionEntry>& motions);
 
-/// The wall; nothing if its numbers make none.
-std::optional<Wall> wall_of(const WallEntry& entry);
+/// True where all that the wall's shape, place and motion depend on has allowed values.
+bool is_usable(const Keys& keys, const WallEntry& wall, const std::vector<MotionEntry>& motions);
+
+/// The motion that a wall names; null if there is none.
+const MotionEntry* motion_named(const std::string& name, const std::vector<MotionEntry>& motions);
+
+/// The wall; nothing if its numbers, or those of its motion, make none.
+std::optional<Wall> wall_of(const WallEntry& entry, const std::vector<MotionEntry>& motions);
 
 /// All that exist.
-std::vector<Wall> walls_of(const std::vector<WallEntry>& entries);
+std::vector<Wall> walls_of(const std::vector<WallEntry>& entries, const std::vector<MotionEntry>& motions);
 
 }  // namespace impinge

@@ -20,6 +20,9 @@ class WetSpace {
   /// only, and close behind a line that is dry there. `margin` is at most the reach of a line, 3 dp.
   bool contains(const Vector<2>& point, double margin = 0.0) const;
 
+  /// Distance to the nearest wall, negative in the dry [m]; exact within 3 dp of a wall, and at least that much beyond.
+  double depth(const Vector<2>& point) const;
+
  private:
   struct Part {
     Outline outline;

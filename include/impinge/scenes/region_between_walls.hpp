@@ -1,0 +1,44 @@
+#pragma once
+// What the walls leave of a region of fluid.
+
+#include <cstdint>
+#include <vector>
+
+#include "impinge/scenes/fluid_region.hpp"
+#include "impinge/scenes/wet_space.hpp"
+
+namespace impinge {
+
+/// Lattice points of a region between walls, as many as the volume between them holds: of the cells that a wall cuts,
+/// those whose points stand deepest in the fluid. Points too near to a wall are moved away from it.
+class RegionBetweenWalls {
+ public:
+  /// `spacing`: dp [m].
+  RegionBetweenWalls(const PlacedRegion<2>& region, const WetSpace& wet, double spacing);
+
+  /// Of the region between the walls [m^2].
+  double volume() const { return volume_; }
+  /// Particles.
+  std::int64_t count() const { return count_; }
+  /// The place of a lattice point; false where there is none.
+  bool point(std::int64_t k, Vector<2>& position) const;
+  /// True where the points beside the walls are no lattice.
+  bool is_cut() const { return is_cut_; }
+
+ private:
+  struct Point {
+    std::int64_t number;
+    Vector<2> position;
+  };
+  bool is_near(const Vector<2>& position) const { return wet_.depth(position) < spacing_; }
+
+  PlacedRegion<2> region_;
+  WetSpace wet_;
+  double spacing_;
+  std::vector<Point> near_;  // the points beside walls, by number
+  double volume_ = 0.0;
+  std::int64_t count_ = 0;
+  bool is_cut_ = false;
+};
+
+}  // namespace impinge

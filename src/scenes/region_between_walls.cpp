@@ -1,0 +1,91 @@
+#include "impinge/scenes/region_between_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace impinge {
+namespace {
+
+constexpr int parts = 8;              // of a cell along an axis, to measure what is left of it
+constexpr double least_depth = 0.3;   // of a point [dp]
+constexpr double most_outside = 0.5;  // of a point that stands for a cell [dp]
+constexpr double step = 1e-3;         // of the depth's gradient [dp]
+constexpr double rounding = 1e-3;     // of a depth [dp]
+
+/// Scatters numbers, so that of equal points not all of one side are taken.
+std::uint64_t scattered(std::int64_t number) {
+  std::uint64_t x = static_cast<std::uint64_t>(number) + 0x9e3779b97f4a7c15U;
+  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+  return x ^ (x >> 31U);
+}
+
+}  // namespace
+
+RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetSpace& wet, double spacing)
+    : region_(region), wet_(wet), spacing_(spacing) {
+  struct Candidate {
+    double depth;  ///< in the region and between the walls [dp]
+    std::uint64_t order;
+    Point point;
+  };
+  std::vector<Candidate> candidates;
+  double cells = 0.0;  // between the walls
+  std::int64_t far = 0;
+  for (std::int64_t k = 0; k < region.points(); ++k) {
+    const Vector<2> position = region.place(k);
+    const double wall_depth = wet.depth(position) / spacing;
+    Vector<2> inside;
+    if (wall_depth >= 1.0) {
+      const bool holds = region.point(k, inside);
+      far += holds ? 1 : 0;
+      continue;
+    }
+    if (wall_depth < -1.0) continue;
+    int within = 0;
+    for (int a = 0; a < parts; ++a) {
+      for (int b = 0; b < parts; ++b) {
+        const Vector<2> offset{{(a + 0.5) / parts - 0.5, (b + 0.5) / parts - 0.5}};
+        const Vector<2> part = position + spacing * offset;
+        within += region.contains(part) && wet.depth(part) > 0.0 ? 1 : 0;
+      }
+    }
+    cells += static_cast<double>(within) / (parts * parts);
+    const double depth = std::min(wall_depth, -region.distance(position) / spacing);
+    if (depth > -most_outside + rounding) candidates.push_back({depth, scattered(k), {k, position}});
+  }
+  std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+    const double difference = a.depth - b.depth;
+    return std::abs(difference) > rounding ? difference > 0.0 : a.order < b.order;
+  });
+  candidates.resize(std::min(candidates.size(), static_cast<std::size_t>(std::llround(cells))));
+  for (Candidate& candidate : candidates) {
+    const double depth = wet.depth(candidate.point.position) / spacing;
+    is_cut_ |= std::abs(depth - 0.5) > 10.0 * rounding;
+    if (depth < least_depth) {
+      Vector<2> slope;
+      for (int k = 0; k < 2; ++k) {
+        Vector<2> way;
+        way[k] = step * spacing;
+        slope[k] = wet.depth(candidate.point.position + way) - wet.depth(candidate.point.position - way);
+      }
+      if (const double size = norm(slope); size > 0.0)
+        candidate.point.position += (least_depth - depth) * spacing / size * slope;
+    }
+    if (wet.depth(candidate.point.position) > 0.0) near_.push_back(candidate.point);
+  }
+  std::ranges::sort(near_, {}, &Point::number);
+  count_ = far + static_cast<std::int64_t>(near_.size());
+  volume_ = (static_cast<double>(far) + cells) * spacing * spacing;
+}
+
+bool RegionBetweenWalls::point(std::int64_t k, Vector<2>& position) const {
+  const auto found = std::ranges::lower_bound(near_, k, {}, &Point::number);
+  if (found != near_.end() && found->number == k) {
+    position = found->position;
+    return true;
+  }
+  return region_.point(k, position) && !is_near(position);
+}
+
+}  // namespace impinge
