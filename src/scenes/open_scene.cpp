@@ -44,6 +44,51 @@ class PointsByPlace {
   std::vector<WallPoint> points_;
 };
 
+/// Where a scene may have fluid at the start: between its walls and out of the way of its inlets.
+class Room {
+ public:
+  Room(const std::vector<Wall>& walls, const std::vector<Inlet<2>>& inlets, double spacing)
+      : wet_(walls, 0.0, spacing), inlets_(inlets) {}
+
+  bool contains(const Vector<2>& place, double gap) const {
+    for (const Inlet<2>& inlet : inlets_)
+      if (inlet.blows && inlet.distance_past(place) < 0.0 && inlet.distance_from_block(place) <= gap) return false;
+    return wet_.contains(place, gap);
+  }
+
+ private:
+  WetSpace wet_;
+  std::vector<Inlet<2>> inlets_;
+};
+
+std::vector<Inlet<2>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
+  std::vector<Inlet<2>> inlets;
+  for (const InletEntry& entry : settings.inlets)
+    inlets.push_back(inlet_of(entry, method.particles.spacing, method.kernel));
+  return inlets;
+}
+
+/// The rows of the inlets that blow at the start, numbered from `id` on.
+void fill_inlets(const std::vector<Inlet<2>>& inlets, std::int64_t id, int rank, int ranks, Particles<2>& particles) {
+  for (const Inlet<2>& inlet : inlets) {
+    if (!inlet.blows) continue;
+    const auto of_row = static_cast<std::int64_t>(inlet.section.size());
+    for_share(inlet.rows * of_row, rank, ranks, [&](std::int64_t k) {
+      const double behind = inlet.last_row + static_cast<double>(k / of_row) * inlet.spacing;
+      particles.append({inlet.at(behind, inlet.section[static_cast<std::size_t>(k % of_row)]), inlet.velocity(), 0.0,
+                        0.0, id + k, ParticleType::inlet});
+    });
+    id += inlet.rows * of_row;
+  }
+}
+
+std::int64_t count_rows(const std::vector<Inlet<2>>& inlets) {
+  std::int64_t count = 0;
+  for (const Inlet<2>& inlet : inlets)
+    if (inlet.blows) count += inlet.rows * static_cast<std::int64_t>(inlet.section.size());
+  return count;
+}
+
 std::vector<WallPoint> points_at(const Scene<2>& scene, double time) {
   std::vector<WallPoint> points = scene.wall_points;
   for (WallPoint& point : points) {
@@ -63,16 +108,22 @@ Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& se
   const double spacing = method.particles.spacing;
   Scene<Dim> scene;
   scene.bounds = {vector_of<Dim>(settings.domain.low), vector_of<Dim>(settings.domain.high)};
+  for (const OutletEntry& entry : settings.outlets)
+    if (auto outlet = outlet_of<Dim>(entry)) scene.outlets.push_back(std::move(*outlet));
   std::vector<WallPoint> points;  // in their places at the start
+  std::vector<Inlet<2>> inlets;
   if constexpr (Dim == 2) {
     scene.walls = walls_of(settings.scene_walls, settings.motions);
     scene.wall_points = wall_points(scene.walls, spacing);
     points = points_at(scene, 0.0);
+    inlets = inlets_of(method, settings);
+    scene.inlets = inlets;
   }
   const auto of_walls = static_cast<std::int64_t>(points.size());
-  const WetSpace wet(scene.walls, 0.0, spacing);
+  const Room room(scene.walls, inlets, spacing);
   const std::vector<PlacedRegion<Dim>> fluid = placed<Dim>(settings.regions, spacing);
-  scene.next_id = of_walls + count_points(fluid);
+  const std::int64_t of_fluid = count_points(fluid);
+  scene.next_id = of_walls + of_fluid + count_rows(inlets);
   scene.fill = [=, bounds = scene.bounds](int rank, int ranks, Particles<Dim>& particles) {
     if constexpr (Dim == 2) {
       for_share(of_walls, rank, ranks, [&](std::int64_t k) {
@@ -82,10 +133,11 @@ Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& se
     const auto is_inside = [&](const Vector<Dim>& position) {
       for (int k = 0; k < Dim; ++k)
         if (position[k] < bounds.low[k] || position[k] >= bounds.high[k]) return false;
-      if constexpr (Dim == 2) return wet.contains(position, least_gap * spacing);
+      if constexpr (Dim == 2) return room.contains(position, least_gap * spacing);
       return true;
     };
     fill_regions<Dim>(fluid, of_walls, rank, ranks, is_inside, particles);
+    if constexpr (Dim == 2) fill_inlets(inlets, of_walls + of_fluid, rank, ranks, particles);
   };
   if constexpr (Dim == 2) {
     if (points.empty()) return scene;
@@ -102,14 +154,14 @@ RegionVolume volume_between_walls(const MethodSettings& method, const SceneSetti
   const double spacing = method.particles.spacing;
   const PlacedRegion<Dim> placed_region(region, spacing);
   if constexpr (Dim == 2) {
-    if (!settings.scene_walls.empty()) {
-      const WetSpace wet(walls_of(settings.scene_walls, settings.motions), 0.0, spacing);
+    if (!settings.scene_walls.empty() || !settings.inlets.empty()) {
+      const Room room(walls_of(settings.scene_walls, settings.motions), inlets_of(method, settings), spacing);
       const auto volume = [&](double step, double gap) {
         const PlacedRegion<2> lattice(region, step);
         std::int64_t count = 0;
         Vector<2> position;
         for (std::int64_t k = 0; k < lattice.points(); ++k)
-          count += lattice.point(k, position) && wet.contains(position, gap) ? 1 : 0;
+          count += lattice.point(k, position) && room.contains(position, gap) ? 1 : 0;
         return static_cast<double>(count) * step * step;
       };
       constexpr double fine = 0.2;  // [dp]
