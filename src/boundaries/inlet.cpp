@@ -3,24 +3,76 @@
 #include <algorithm>
 
 namespace impinge {
+namespace {
+
+/// The inlet that an inlet particle belongs to: the blocks of several do not overlap.
+template <int Dim>
+const Inlet<Dim>& inlet_of(const std::vector<Inlet<Dim>>& inlets, const Vector<Dim>& position) {
+  if (inlets.size() == 1) return inlets.front();
+  return *std::ranges::min_element(inlets, {},
+                                   [&](const Inlet<Dim>& inlet) { return inlet.distance_from_block(position); });
+}
+
+}  // namespace
+
+template <int Dim>
+double Inlet<Dim>::speed_at(double time) const {
+  if (speeds.empty()) return speed;
+  const auto after = std::ranges::upper_bound(speeds, time, {}, &SpeedEntry::time);
+  if (after == speeds.begin()) return speeds.front().speed;
+  if (after == speeds.end()) return speeds.back().speed;
+  const SpeedEntry& before = *(after - 1);
+  return before.speed + (time - before.time) / (after->time - before.time) * (after->speed - before.speed);
+}
+
+template <int Dim>
+double Inlet<Dim>::distance_from_block(const Vector<Dim>& position) const {
+  const double past = distance_past(position);
+  double distance = std::max({0.0, past, -rows * spacing - past});
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    const double place = dot(position - corner, across[k]);
+    const auto [low, high] = std::ranges::minmax(section, {}, [k](const auto& x) { return x[k]; });
+    distance = std::max({distance, low[k] - place - 0.5 * spacing, place - high[k] - 0.5 * spacing});
+  }
+  return distance;
+}
+
+template <int Dim>
+void set_inlets(double time, std::vector<Inlet<Dim>>& inlets, Particles<Dim>& particles) {
+  if (std::ranges::all_of(inlets, &Inlet<Dim>::is_steady)) return;
+  for (Inlet<Dim>& inlet : inlets) {
+    inlet.blows = inlet.blows_at(time);
+    inlet.speed = inlet.speed_at(time);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (particles.type[i] == ParticleType::inlet)
+      particles.velocity[i] = inlet_of(inlets, particles.position[i]).velocity();
+}
 
 template <int Dim>
 BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::vector<Outlet<Dim>>& outlets,
                                   std::int64_t& next_id, Particles<Dim>& particles,
                                   const std::function<bool(const Vector<Dim>&)>& owns) {
-  BoundaryFlow flow;
+  BoundaryFlow flow{.left_by = std::vector<std::int64_t>(outlets.size())};
   int kept = 0;
   for (int i = 0; i < particles.owned; ++i) {
     ParticleRecord<Dim> record = particles.record(i);
-    const auto has_entered = [&](const Inlet<Dim>& inlet) { return inlet.distance_past(record.position) > 0.0; };
-    if (record.type == ParticleType::inlet && std::ranges::any_of(inlets, has_entered)) {
-      record.type = ParticleType::fluid;
-      ++flow.entered;
+    if (record.type == ParticleType::inlet) {
+      const Inlet<Dim>& inlet = inlet_of(inlets, record.position);
+      if (!inlet.blows) continue;
+      if (inlet.distance_past(record.position) > 0.0) {
+        record.type = ParticleType::fluid;
+        ++flow.entered;
+      }
     }
-    const auto has_left = [&](const Outlet<Dim>& outlet) { return outlet.has_passed(record.position); };
-    if (record.type == ParticleType::fluid && std::ranges::any_of(outlets, has_left)) {
-      ++flow.left;
-      continue;
+    if (record.type == ParticleType::fluid) {
+      const auto has_left = [&](const Outlet<Dim>& outlet) { return outlet.has_passed(record.position); };
+      const auto outlet = std::ranges::find_if(outlets, has_left);
+      if (outlet != outlets.end()) {
+        ++flow.left;
+        ++flow.left_by[static_cast<std::size_t>(outlet - outlets.begin())];
+        continue;
+      }
     }
     particles.set_record(kept++, record);
   }
@@ -28,6 +80,10 @@ BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::ve
   particles.resize(kept);
 
   for (Inlet<Dim>& inlet : inlets) {
+    if (!inlet.blows) {
+      inlet.last_row = inlet.no_row();
+      continue;
+    }
     while (inlet.last_row - inlet.spacing >= -inlet.rows * inlet.spacing) {
       inlet.last_row -= inlet.spacing;
       for (std::size_t k = 0; k < inlet.section.size(); ++k) {
@@ -42,9 +98,13 @@ BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::ve
   return flow;
 }
 
-template BoundaryFlow pass_open_boundaries(std::vector<Inlet<2>>&, const std::vector<Outlet<2>>&, std::int64_t&,
-                                           Particles<2>&, const std::function<bool(const Vector<2>&)>&);
-template BoundaryFlow pass_open_boundaries(std::vector<Inlet<3>>&, const std::vector<Outlet<3>>&, std::int64_t&,
-                                           Particles<3>&, const std::function<bool(const Vector<3>&)>&);
+#define IMPINGE_INSTANTIATE(Dim)                                                                                       \
+  template struct Inlet<Dim>;                                                                                          \
+  template void set_inlets(double, std::vector<Inlet<Dim>>&, Particles<Dim>&);                                         \
+  template BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>&, const std::vector<Outlet<Dim>>&, std::int64_t&, \
+                                             Particles<Dim>&, const std::function<bool(const Vector<Dim>&)>&);
+IMPINGE_INSTANTIATE(2)
+IMPINGE_INSTANTIATE(3)
+#undef IMPINGE_INSTANTIATE
 
 }  // namespace impinge

@@ -41,7 +41,8 @@ void collide(const CollisionSettings& settings, double spacing, double dt, State
 
 template <int Dim>
 void advance(double dt, std::vector<Inlet<Dim>>& inlets, Particles<Dim>& particles) {
-  for (Inlet<Dim>& inlet : inlets) inlet.last_row += inlet.speed * dt;
+  for (Inlet<Dim>& inlet : inlets)
+    if (inlet.blows) inlet.last_row += inlet.speed * dt;
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
     if (particles.type[i] == ParticleType::fluid || particles.type[i] == ParticleType::inlet)
       particles.position[i] += dt * particles.velocity[i];

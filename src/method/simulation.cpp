@@ -111,6 +111,7 @@ void Simulation<Dim>::try_step(double target) {
   const double fall_speed = std::sqrt(acceleration * spacing);
   {
     const PhaseLog log(Phase::predict);
+    set_inlets(report_.time + 0.5 * report_.dt, scene_.inlets, state_.particles);
     accelerate(rule, force, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
     collide(settings_.collision, spacing, report_.dt, state_);
     advance(rule.before, scene_.inlets, state_.particles);
@@ -130,7 +131,8 @@ void Simulation<Dim>::try_step(double target) {
 template <int Dim>
 template <class Use>
 void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, std::vector<Inlet<Dim>>& inlets,
-                                  std::int64_t& next_id, WallTimes& wall_times, Use&& use) {
+                                  std::vector<Outlet<Dim>>& outlets, std::int64_t& next_id, WallTimes& wall_times,
+                                  Use&& use) {
   use("step", report.step);
   use("time", report.time);
   use("dt", report.dt);
@@ -153,6 +155,8 @@ void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, s
   use("wall_velocity_time", wall_times.velocity);
   use("wall_speed", report.wall_speed);
   for (std::size_t k = 0; k < inlets.size(); ++k) use(fmt::format("inlet_{}_last_row", k + 1), inlets[k].last_row);
+  for (std::size_t k = 0; k < outlets.size(); ++k)
+    if (outlets[k].region) use(fmt::format("outlet_{}_out", k + 1), outlets[k].out);
 }
 
 template <int Dim>
@@ -169,9 +173,10 @@ void Simulation<Dim>::save(Checkpoint<Dim>& state) const {
   StepReport report = report_;
   AveragingWindow window = window_;
   std::vector<Inlet<Dim>> inlets = scene_.inlets;
+  std::vector<Outlet<Dim>> outlets = scene_.outlets;
   std::int64_t next_id = scene_.next_id;
   WallTimes wall_times = wall_times_;
-  for_numbers(report, window, inlets, next_id, wall_times,
+  for_numbers(report, window, inlets, outlets, next_id, wall_times,
               [&](const std::string& name, auto number) { state.numbers[name] = static_cast<double>(number); });
 }
 
@@ -198,7 +203,7 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
     if (found == state.numbers.end()) throw FileError(fmt::format("the checkpoint has no {}", name));
     return found->second;
   };
-  for_numbers(report_, window_, scene_.inlets, scene_.next_id, wall_times_,
+  for_numbers(report_, window_, scene_.inlets, scene_.outlets, scene_.next_id, wall_times_,
               [&]<class T>(const std::string& name, T& target) { target = static_cast<T>(number(name)); });
 
   Decomposition<Dim>& decomposition = state_.decomposition;
@@ -246,6 +251,8 @@ void Simulation<Dim>::pass_boundaries() {
                                 [&](const Vector<Dim>& position) { return state_.decomposition.owns(position); });
   report_.in += sum_over_ranks(comm_, flow.entered);
   report_.out += sum_over_ranks(comm_, flow.left);
+  for (std::size_t k = 0; k < scene_.outlets.size(); ++k)
+    if (scene_.outlets[k].region) scene_.outlets[k].out += sum_over_ranks(comm_, flow.left_by[k]);
 }
 
 // Before particles are told to stay on their side.

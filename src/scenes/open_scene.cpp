@@ -10,6 +10,8 @@
 namespace impinge {
 namespace {
 
+constexpr double least_gap = 0.25;  // between a region's particles and the block of an inlet [dp]
+
 /// Wall points in their places, sorted so that the nearest one is found quickly.
 class PointsByPlace {
  public:
@@ -43,6 +45,48 @@ class PointsByPlace {
   std::vector<WallPoint> points_;
 };
 
+template <int Dim>
+bool contains(const Box<Dim>& bounds, const Vector<Dim>& position) {
+  for (int k = 0; k < Dim; ++k)
+    if (position[k] < bounds.low[k] || position[k] >= bounds.high[k]) return false;
+  return true;
+}
+
+/// True in the block of an inlet that blows at the start, or nearer to it than `gap` [m].
+bool is_in_block(const std::vector<Inlet<2>>& inlets, const Vector<2>& place, double gap) {
+  return std::ranges::any_of(inlets, [&](const Inlet<2>& inlet) {
+    return inlet.blows && inlet.distance_past(place) < 0.0 && inlet.distance_from_block(place) <= gap;
+  });
+}
+
+std::vector<Inlet<2>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
+  std::vector<Inlet<2>> inlets;
+  for (const InletEntry& entry : settings.inlets)
+    inlets.push_back(inlet_of(entry, method.particles.spacing, method.kernel));
+  return inlets;
+}
+
+/// The rows of the inlets that blow at the start, numbered from `id` on.
+void fill_inlets(const std::vector<Inlet<2>>& inlets, std::int64_t id, int rank, int ranks, Particles<2>& particles) {
+  for (const Inlet<2>& inlet : inlets) {
+    if (!inlet.blows) continue;
+    const auto of_row = static_cast<std::int64_t>(inlet.section.size());
+    for_share(inlet.rows * of_row, rank, ranks, [&](std::int64_t k) {
+      const double behind = inlet.last_row + static_cast<double>(k / of_row) * inlet.spacing;
+      particles.append({inlet.at(behind, inlet.section[static_cast<std::size_t>(k % of_row)]), inlet.velocity(), 0.0,
+                        0.0, id + k, ParticleType::inlet});
+    });
+    id += inlet.rows * of_row;
+  }
+}
+
+std::int64_t count_rows(const std::vector<Inlet<2>>& inlets) {
+  std::int64_t count = 0;
+  for (const Inlet<2>& inlet : inlets)
+    if (inlet.blows) count += inlet.rows * static_cast<std::int64_t>(inlet.section.size());
+  return count;
+}
+
 std::vector<WallPoint> points_at(const Scene<2>& scene, double time) {
   std::vector<WallPoint> points = scene.wall_points;
   for (WallPoint& point : points) {
@@ -55,34 +99,40 @@ std::vector<WallPoint> points_at(const Scene<2>& scene, double time) {
   return points;
 }
 
-/// Puts walls, their points and the fluid between them into a scene.
-void add_walls(double spacing, const SceneSettings& settings, const std::vector<PlacedRegion<2>>& fluid,
-               const std::function<bool(const Vector<2>&)>& is_inside, Scene<2>& scene) {
+/// Puts walls, their points, inlets and the fluid between them into a scene.
+void fill_plane_scene(const MethodSettings& method, const SceneSettings& settings, Scene<2>& scene) {
+  const double spacing = method.particles.spacing;
   scene.walls = walls_of(settings.scene_walls, settings.motions);
   scene.wall_points = wall_points(scene.walls, spacing);
+  scene.inlets = inlets_of(method, settings);
+  const WetSpace wet(scene.walls, 0.0, spacing);
+  const std::vector<PlacedRegion<2>> regions = placed<2>(settings.regions, spacing);
+  std::vector<RegionBetweenWalls> fluid;
+  for (const PlacedRegion<2>& region : regions) {
+    fluid.emplace_back(region, wet, spacing);
+    scene.settles |= fluid.back().is_cut();
+  }
   const std::vector<WallPoint> points = points_at(scene, 0.0);
   const auto of_walls = static_cast<std::int64_t>(points.size());
-  scene.next_id += of_walls;
-  const WetSpace wet(scene.walls, 0.0, spacing);
-  std::vector<RegionBetweenWalls> between;
-  for (const PlacedRegion<2>& region : fluid) {
-    between.emplace_back(region, wet, spacing);
-    scene.settles |= between.back().is_cut();
-  }
-  scene.fill = [=](int rank, int ranks, Particles<2>& particles) {
+  const std::int64_t of_fluid = count_points(regions);
+  scene.next_id = of_walls + of_fluid + count_rows(scene.inlets);
+  scene.fill = [=, bounds = scene.bounds, inlets = scene.inlets](int rank, int ranks, Particles<2>& particles) {
     for_share(of_walls, rank, ranks, [&](std::int64_t k) {
       particles.append({points[static_cast<std::size_t>(k)].position, {}, 0.0, 0.0, k, ParticleType::wall});
     });
     std::int64_t first_id = of_walls;
     for (std::size_t r = 0; r < fluid.size(); ++r) {
-      for_share(fluid[r].points(), rank, ranks, [&](std::int64_t k) {
+      for_share(regions[r].points(), rank, ranks, [&](std::int64_t k) {
         Vector<2> position;
-        if (between[r].point(k, position) && is_inside(position))
-          particles.append({position, fluid[r].velocity(position), 0.0, 0.0, first_id + k, ParticleType::fluid});
+        if (fluid[r].point(k, position) && contains(bounds, position) &&
+            !is_in_block(inlets, position, least_gap * spacing))
+          particles.append({position, regions[r].velocity(position), 0.0, 0.0, first_id + k, ParticleType::fluid});
       });
-      first_id += fluid[r].points();
+      first_id += regions[r].points();
     }
+    fill_inlets(inlets, of_walls + of_fluid, rank, ranks, particles);
   };
+  if (points.empty()) return;
   const auto by_place = std::make_shared<const PointsByPlace>(points);
   scene.wall_normal = [by_place](const Vector<2>& place) { return by_place->nearest(place).normal; };
   scene.on_floor = [](const Vector<2>&) { return false; };
@@ -94,22 +144,18 @@ template <int Dim>
 Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& settings) {
   Scene<Dim> scene;
   scene.bounds = {vector_of<Dim>(settings.domain.low), vector_of<Dim>(settings.domain.high)};
-  const auto is_inside = [bounds = scene.bounds](const Vector<Dim>& position) {
-    for (int k = 0; k < Dim; ++k)
-      if (position[k] < bounds.low[k] || position[k] >= bounds.high[k]) return false;
-    return true;
-  };
-  const std::vector<PlacedRegion<Dim>> fluid = placed<Dim>(settings.regions, method.particles.spacing);
-  scene.next_id = count_points(fluid);
+  for (const OutletEntry& entry : settings.outlets)
+    if (auto outlet = outlet_of<Dim>(entry)) scene.outlets.push_back(std::move(*outlet));
   if constexpr (Dim == 2) {
-    if (!settings.scene_walls.empty()) {
-      add_walls(method.particles.spacing, settings, fluid, is_inside, scene);
-      return scene;
-    }
+    fill_plane_scene(method, settings, scene);
+  } else {
+    const std::vector<PlacedRegion<Dim>> fluid = placed<Dim>(settings.regions, method.particles.spacing);
+    scene.next_id = count_points(fluid);
+    scene.fill = [fluid, bounds = scene.bounds](int rank, int ranks, Particles<Dim>& particles) {
+      const auto is_inside = [&](const Vector<Dim>& position) { return contains(bounds, position); };
+      fill_regions<Dim>(fluid, 0, rank, ranks, is_inside, particles);
+    };
   }
-  scene.fill = [fluid, is_inside](int rank, int ranks, Particles<Dim>& particles) {
-    fill_regions<Dim>(fluid, 0, rank, ranks, is_inside, particles);
-  };
   return scene;
 }
 
@@ -120,10 +166,16 @@ RegionVolume volume_between_walls(const MethodSettings& method, const SceneSetti
   const double of_particle = std::pow(spacing, Dim);
   const PlacedRegion<Dim> placed_region(region, spacing);
   if constexpr (Dim == 2) {
-    if (!settings.scene_walls.empty()) {
+    if (!settings.scene_walls.empty() || !settings.inlets.empty()) {
       const WetSpace wet(walls_of(settings.scene_walls, settings.motions), 0.0, spacing);
+      const std::vector<Inlet<2>> inlets = inlets_of(method, settings);
       const RegionBetweenWalls between(placed_region, wet, spacing);
-      return {between.volume(), static_cast<double>(between.count()) * of_particle};
+      std::int64_t taken = 0;  // by inlets
+      Vector<2> position;
+      for (std::int64_t k = 0; k < placed_region.points(); ++k)
+        taken += between.point(k, position) && is_in_block(inlets, position, least_gap * spacing) ? 1 : 0;
+      const double in_blocks = static_cast<double>(taken) * of_particle;
+      return {between.volume() - in_blocks, static_cast<double>(between.count()) * of_particle - in_blocks};
     }
   }
   return {placed_region.volume(), static_cast<double>(placed_region.count()) * of_particle};

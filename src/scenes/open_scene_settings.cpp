@@ -82,6 +82,103 @@ void add_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in, 
   for (const SoundWall& wall : sound_walls(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
 }
 
+/// An inlet's block with the row that may still be behind it, and its entry.
+struct SoundInlet {
+  const InletEntry* entry;
+  Inlet<2> inlet;
+
+  Outline block() const { return way_of(inlet, entry->width, -(inlet.rows + 1) * inlet.spacing, 0.0, 0.0); }
+};
+
+/// The inlets that exist, in two dimensions.
+std::vector<SoundInlet> sound_inlets(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  std::vector<SoundInlet> inlets;
+  if (!keys.usable(in.dimension, in.spacing, in.kernel.radius, in.kernel.laplacian_radius) || in.dimension != 2)
+    return inlets;
+  for (const InletEntry& entry : s.inlets)
+    if (is_usable(keys, entry) && entry.width > 0.5 * in.spacing)
+      inlets.push_back({&entry, inlet_of(entry, in.spacing, in.kernel)});
+  return inlets;
+}
+
+void add_inlets(const Keys& keys, const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
+  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) bounds.add(inlet.block().bounds());
+}
+
+/// Where an outline comes into another that has an inside.
+std::optional<Vector<2>> common_place(const Outline& area, const Outline& outline) {
+  if (const Gap gap = narrowest_gap(area, outline); gap.width == 0.0) return gap.begin;
+  const Vector<2> point = outline.edges().front().begin;
+  if (area.contains(point)) return point;
+  return {};
+}
+
+/// What is wrong with an inlet between walls that stand as they do at a time; nothing if all is well.
+std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall>& walls, double time,
+                          const SceneInputs& in) {
+  constexpr double beside = 0.25;  // so near to a side, a wall is along it [dp]
+  const double margin = beside * in.spacing, reach = in.kernel.largest() * in.spacing, width = inlet.entry->width;
+  const Outline block = way_of(inlet.inlet, width, -inlet.inlet.rows * inlet.inlet.spacing, 0.0, margin);
+  const Outline before = way_of(inlet.inlet, width, 0.0, reach, margin);
+  std::vector<Wall> all;
+  for (const SoundWall& wall : walls) {
+    const Outline outline = outline_at(wall.wall, time);
+    if (const auto place = common_place(block, outline))
+      return fmt::format("the inlet is cut by the wall \"{}\", at ({:.4g}, {:.4g}) m", wall.wall.name, (*place)[0],
+                         (*place)[1]);
+    if (outline.closed() && !wall.wall.wet_left && outline.contains(vector_of<2>(inlet.entry->center)))
+      return fmt::format("the inlet is inside the wall \"{}\"", wall.wall.name);
+    if (const auto place = common_place(before, outline))
+      return fmt::format(
+          "blows into the wall \"{}\", at ({:.4g}, {:.4g}) m; allowed: a wall farther away than {:.4g} m, "
+          "or along its sides",
+          wall.wall.name, (*place)[0], (*place)[1], reach);
+    all.push_back(wall.wall);
+  }
+  if (!WetSpace(all, time, in.spacing).contains(vector_of<2>(inlet.entry->center)))
+    return "the inlet is on the dry side of the walls";
+  return "";
+}
+
+/// Notes inlets that walls are in the way of, at the start or later.
+void check_inlets_and_walls(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  const std::vector<SoundWall> walls = sound_walls(keys, s, in);
+  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) {
+    const double start = std::max(inlet.entry->start, 0.0);
+    std::vector<double> times{start};
+    for (const SoundWall& wall : walls)
+      for (const double time : times_of(keys, *wall.entry, s, in, some_times))
+        if (time > start && time <= inlet.entry->stop) times.push_back(time);
+    for (const double time : times) {
+      const std::string problem = inlet_problem(inlet, walls, time, in);
+      if (problem.empty()) continue;
+      keys.mistake(inlet.entry->center, time > 0.0 ? fmt::format("at t = {:.4g} s {}", time, problem) : problem);
+      break;
+    }
+  }
+}
+
+/// Notes inlets that are faster than particles may be, or whose rows are out of the bounds.
+void check_inlets_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) {
+    const double speed = largest_speed(*inlet.entry);
+    if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds) && speed > in.time.max_speed)
+      keys.mistake(inlet.entry->center, fmt::format("blows at {:.4g} m/s; allowed: up to time.max_speed, {} (m/s)",
+                                                    speed, number_text(in.time.max_speed)));
+    if (!keys.usable(s.domain.low, s.domain.high)) continue;
+    const Box<2> box = inlet.block().bounds();
+    for (int k = 0; k < 2; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      if (box.low[k] >= s.domain.low[axis] && box.high[k] <= s.domain.high[axis]) continue;
+      keys.mistake(inlet.entry->center,
+                   fmt::format("its rows reach from {0} = {1:.6g} to {2:.6g} m, out of the bounds; allowed: [{3:.6g}, "
+                               "{4:.6g}] (m), and domain",
+                               k == 0 ? "x" : "y", box.low[k], box.high[k], s.domain.low[axis], s.domain.high[axis]));
+      break;
+    }
+  }
+}
+
 /// The largest speed of a wall's points, and when it is so.
 struct FastestMoment {
   double speed = 0.0, time = 0.0;
@@ -142,6 +239,7 @@ void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   add_fluid(s, in, bounds);
   const double of_fluid = bounds.longest_side();
   add_walls(keys, s, in, bounds);
+  add_inlets(keys, s, in, bounds);
   if (bounds.empty()) return;
   const double margin = of_fluid > 0.0 ? of_fluid : bounds.longest_side();
   for (int k = 0; k < in.dimension; ++k) {
@@ -202,8 +300,11 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
   }
   for (const SoundWall& wall : sound_walls(keys, s, in))
     fastest = std::max(fastest, fastest_moment(wall.wall, times_of(keys, *wall.entry, s, in, many_times)).speed);
+  for (const InletEntry& inlet : s.inlets)
+    if (keys.usable(inlet.speed, inlet.speeds)) fastest = std::max(fastest, largest_speed(inlet));
   Bounds all = fluid;
   add_walls(keys, s, in, all);
+  add_inlets(keys, s, in, all);
   const double side = all.longest_side();
   const double pull = in.fluid.central_force * in.fluid.central_force * side;
   return std::sqrt(fastest * fastest + 2.0 * (gravity + pull) * side);
@@ -212,6 +313,7 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
 void derive_open_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   derive_motions(keys, s.motions);
   derive_walls(keys, s.scene_walls);
+  derive_openings(keys, in.dimension, s.inlets, s.outlets);
   derive_domain(keys, s, in);
 }
 
@@ -221,16 +323,25 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     keys.mistake(s.scene_walls, "walls of any shape exist in two dimensions; allowed: dimension = 2");
   if (has_walls && keys.usable(in.walls.model) && in.walls.model != WallModel::mirror)
     keys.mistake(s.scene_walls, "walls of any shape are no particles; allowed: walls.model = \"mirror\"");
+  const bool has_inlets = keys.usable(s.inlets) && !s.inlets.empty();
+  if (has_inlets && keys.usable(in.dimension) && in.dimension != 2)
+    keys.mistake(s.inlets, "inlets of a scene exist in two dimensions; allowed: dimension = 2");
   if (!keys.usable(in.dimension, in.spacing)) return;
+  if (keys.usable(s.outlets)) check_outlets(keys, in.dimension, s.outlets);
   const bool plane_walls = has_walls && in.dimension == 2;
   if (keys.usable(s.motions)) check_motions(keys, s.motions);
   if (plane_walls) {
     check_walls(keys, in.spacing, s.scene_walls, s.motions);
     check_motion(keys, s, in);
   }
-  if (!keys.usable(s.regions, s.domain.low, s.domain.high)) return;
-  if (s.regions.empty()) {
-    keys.mistake(s.geometry, "no fluid; allowed: at least one [[fluid.region]]");
+  if (has_inlets && in.dimension == 2) {
+    check_inlets(keys, in.spacing, in.kernel, s.inlets);
+    check_inlets_and_walls(keys, s, in);
+    check_inlets_in_domain(keys, s, in);
+  }
+  if (!keys.usable(s.regions, s.inlets, s.domain.low, s.domain.high)) return;
+  if (s.regions.empty() && s.inlets.empty()) {
+    keys.mistake(s.geometry, "no fluid and no inlet; allowed: at least one [[fluid.region]] or [[inlet]]");
     return;
   }
   check_domain(keys, s, in);

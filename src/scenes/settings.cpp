@@ -180,14 +180,15 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
   });
   keys.only_where(s.geometry, {SceneType::scene}, [&] {
     keys.add("domain.low", s.domain.low, "corner of the bounds with the smallest coordinates",
-             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side below fluid and walls"});
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side below fluid, walls and inlets"});
     keys.add("domain.high", s.domain.high, "corner of the bounds with the largest coordinates",
-             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above fluid and walls"});
+             {.unit = "m", .fixed = true, .fallback = "the fluid's longest side above fluid, walls and inlets"});
   });
   keys.only_where(s.geometry, {SceneType::tank, SceneType::scene}, [&] { declare_fluid(keys, s.regions); });
   keys.only_where(s.geometry, {SceneType::scene}, [&] {
     declare_walls(keys, s.scene_walls);
     declare_motions(keys, s.motions);
+    declare_openings(keys, s.inlets, s.outlets);
   });
 }
 

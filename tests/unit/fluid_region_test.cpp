@@ -454,7 +454,9 @@ value = [0, -9.81]
 }
 
 TEST(FluidRegion, AScenesFluidAndBoundsAreChecked) {
-  expect_one(mistakes_in(""), "case.toml:1: geometry = \"scene\": no fluid; allowed: at least one [[fluid.region]]");
+  expect_one(mistakes_in(""),
+             "case.toml:1: geometry = \"scene\": no fluid and no inlet; allowed: at least one "
+             "[[fluid.region]] or [[inlet]]");
   expect_one(mistakes_in("domain = {low = [0, 0], high = [1, 0.09]}\n" + std::string(square)),
              "narrower than two particles");
   expect_one(mistakes_in("", tank), "tank.fluid_height = 0.0: no fluid");

@@ -51,6 +51,9 @@ class Simulation {
   /// Time span over which the wall pressure has been averaged so far.
   const AveragingWindow& window() const { return window_; }
 
+  /// Outlets, each with the fluid that has left through it if it is a region.
+  const std::vector<Outlet<Dim>>& outlets() const { return scene_.outlets; }
+
   /// Memory of particles, pair lists and matrix on this rank [bytes].
   std::size_t bytes() const;
 
@@ -88,13 +91,13 @@ class Simulation {
   };
   template <class Use>
   static void for_numbers(StepReport& report, AveragingWindow& window, std::vector<Inlet<Dim>>& inlets,
-                          std::int64_t& next_id, WallTimes& wall_times, Use&& use);
+                          std::vector<Outlet<Dim>>& outlets, std::int64_t& next_id, WallTimes& wall_times, Use&& use);
 
   [[noreturn]] void fail(Phase phase, const std::string& reason) const;
 
   MPI_Comm comm_;
   MethodSettings settings_;
-  Scene<Dim> scene_;  // its inlets move
+  Scene<Dim> scene_;  // its inlets move, its outlets count
   State<Dim> state_;
   Projection<Dim> projection_;
   StepReport report_;

@@ -4,6 +4,7 @@
 #include "impinge/config/key.hpp"
 #include "impinge/method/settings.hpp"
 #include "impinge/scenes/fluid_region.hpp"
+#include "impinge/scenes/opening_settings.hpp"
 #include "impinge/scenes/wall_settings.hpp"
 
 namespace impinge {
@@ -53,6 +54,8 @@ struct SceneSettings {
   std::vector<FluidRegion> regions;    ///< of a tank or a scene
   std::vector<WallEntry> scene_walls;  ///< of a scene
   std::vector<MotionEntry> motions;    ///< of its walls
+  std::vector<InletEntry> inlets;      ///< of a scene
+  std::vector<OutletEntry> outlets;    ///< of a scene
 };
 
 /// The settings of other modules that a scene depends on.

@@ -1,0 +1,67 @@
+#pragma once
+// Inlets and outlets of a scene: [[inlet]] and [[outlet]] of a case file.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "impinge/boundaries/inlet.hpp"
+#include "impinge/config/key.hpp"
+#include "impinge/geometry/outline.hpp"
+#include "impinge/method/settings.hpp"
+#include "impinge/scenes/shape_settings.hpp"
+
+namespace impinge {
+
+/// One table of [[inlet]], in two dimensions.
+struct InletEntry {
+  static constexpr double never = 1e30;  ///< [s]
+
+  std::string name;
+  Numbers center{};            ///< of the inlet's plane [m]
+  Numbers direction{};         ///< of the flow, of any length [-]
+  double width = 0.0;          ///< [m]
+  double speed = 0.0;          ///< [m/s]
+  std::vector<double> times;   ///< of the speeds [s]
+  std::vector<double> speeds;  ///< in the place of speed: linear in between [m/s]
+  double start = 0.0;          ///< [s]
+  double stop = never;         ///< [s]
+};
+
+/// One table of [[outlet]].
+struct OutletEntry : ShapeSettings {
+  std::string name;
+};
+
+/// Declares [[inlet]] and [[outlet]].
+void declare_openings(Keys& keys, std::vector<InletEntry>& inlets, std::vector<OutletEntry>& outlets);
+
+/// Sets names and fixed points that are not given.
+void derive_openings(const Keys& keys, int dimension, std::vector<InletEntry>& inlets,
+                     std::vector<OutletEntry>& outlets);
+
+/// Notes what is wrong with each inlet by itself, and inlets that overlap. The keys of the dimension, 2, and of
+/// `spacing` [m] are usable.
+void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, const std::vector<InletEntry>& inlets);
+
+/// Notes shapes without an inside and names that are used twice.
+void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& outlets);
+
+/// True where what an inlet's place depends on has allowed values that make one.
+bool is_usable(const Keys& keys, const InletEntry& inlet);
+
+/// The largest speed at any time [m/s].
+double largest_speed(const InletEntry& inlet);
+
+/// The inlet with its rows in place, if it blows at the start. Rows stand a little closer or farther apart than dp, so
+/// that what enters has the inlet's width.
+Inlet<2> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel);
+
+/// The part of an inlet's way between two distances past its plane, narrower by `margin` at both sides [m].
+Outline way_of(const Inlet<2>& inlet, double width, double from, double to, double margin);
+
+/// Nothing if its numbers make none.
+template <int Dim>
+std::optional<Outlet<Dim>> outlet_of(const OutletEntry& entry);
+
+}  // namespace impinge
