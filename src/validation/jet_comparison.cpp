@@ -91,7 +91,7 @@ void JetComparison::set_wall_average(const Particles<2>& particles, double durat
     const double x = particles.position[i][0];
     wall_.push_back({x, particles.pressure_impulse[i] / duration, jet_.wall_pressure(x)});
   }
-  std::ranges::sort(wall_, {}, &WallPoint::x);
+  std::ranges::sort(wall_, {}, &PlatePoint::x);
 }
 
 void JetComparison::add_snapshot(const Particles<2>& particles) {
@@ -145,8 +145,8 @@ JetMetrics JetComparison::metrics() const {
   JetMetrics metrics;
   if (!wall_.empty()) {
     double error = 0.0, reference = 0.0, sum = 0.0;
-    WallPoint peak = wall_.front();
-    for (const WallPoint& point : wall_) {
+    PlatePoint peak = wall_.front();
+    for (const PlatePoint& point : wall_) {
       sum += point.pressure;
       if (point.pressure > peak.pressure) peak = point;
       if (point.analytic <= 1e-3 * jet_.stagnation_pressure()) continue;

@@ -303,7 +303,7 @@ void write_report(const Validation& validation, const std::string& directory) {
 
   TextFile wall(folder / "wall_pressure.csv");
   wall.print("x_m,pressure_Pa,analytic_Pa\n");
-  for (const WallPoint& point : validation.wall)
+  for (const PlatePoint& point : validation.wall)
     wall.print("{:.9g},{:.9g},{:.9g}\n", point.x, point.pressure, point.analytic);
   wall.finish();
 

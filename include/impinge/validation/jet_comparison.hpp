@@ -46,7 +46,7 @@ struct JetMetrics {
 };
 
 /// Time-averaged pressure at a wall particle.
-struct WallPoint {
+struct PlatePoint {
   double x;         ///< [m]
   double pressure;  ///< [Pa]
   double analytic;  ///< [Pa]
@@ -74,7 +74,7 @@ class JetComparison {
   JetMetrics metrics() const;
 
   /// In ascending x; empty without an average.
-  std::vector<WallPoint> wall_profile() const { return wall_; }
+  std::vector<PlatePoint> wall_profile() const { return wall_; }
 
   /// Columns some 2 dp wide where the analytic jet has a film on the plate; empty without a snapshot of finite numbers.
   std::vector<FilmColumn> film_profile() const;
@@ -108,7 +108,7 @@ class JetComparison {
   AnalyticJet jet_;
   double spacing_;
   Columns plate_, h1_, h2_;
-  std::vector<WallPoint> wall_;
+  std::vector<PlatePoint> wall_;
 
   int snapshots_ = 0;
   bool finite_ = true;                             // every number of the fluid so far

@@ -35,7 +35,7 @@ struct Validation {
   /// those of the last snapshot where it is of the same step. 0 unless particles are lost or made. Empty without a
   /// history.
   std::optional<std::int64_t> particle_balance;
-  std::vector<WallPoint> wall;
+  std::vector<PlatePoint> wall;
   std::vector<FilmColumn> film;
   std::optional<double> analytic_film_h1, analytic_film_h2;  ///< film_h1, film_h2 of the analytic jet [-]
 };
