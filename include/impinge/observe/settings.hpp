@@ -11,7 +11,7 @@ namespace impinge {
 
 /// One table of [[probe]]: pressure and velocity at a point, or their means over the face of a sensor.
 struct ProbeSettings {
-  std::string name;
+  std::string name{};
   std::string wall = "none";  ///< that it rides on; "none": it is fixed in space
   Numbers position{};         ///< of a riding one where the wall's pose is the identity [m]
   double diameter = 0.0;      ///< of the face [m]; 0: a point
@@ -20,7 +20,7 @@ struct ProbeSettings {
 
 /// One table of [[gauge]]: the water level along a line.
 struct GaugeSettings {
-  std::string name;
+  std::string name{};
   Numbers point{};      ///< where the line begins [m]
   Numbers direction{};  ///< of any length but 0
   double length = 0.0;  ///< [m]
@@ -28,7 +28,7 @@ struct GaugeSettings {
 
 /// One table of [[section]]: the discharge through a line, in two dimensions.
 struct SectionSettings {
-  std::string name;
+  std::string name{};
   Numbers begin{}, end{};  ///< [m]
 };
 
