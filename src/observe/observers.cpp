@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
+
+#include "impinge/core/errors.hpp"
 
 namespace impinge {
 namespace {
@@ -50,7 +53,11 @@ void Observers<Dim>::go_on(const std::string& last_row) {
   std::vector<double> numbers;
   std::istringstream cells(last_row);
   for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::strtod(cell.c_str(), nullptr));
-  if (numbers.size() != 2 + sections_.columns().size()) return;
+  if (numbers.empty()) return;
+  constexpr double most = 1e15;  // larger ones are not counted exactly
+  const auto is_sound = [](double x) { return std::abs(x) < most; };
+  if (numbers.size() != 2 + sections_.columns().size() || !std::ranges::all_of(numbers, is_sound))
+    throw FileError(fmt::format("cannot continue the table of sections: its last row is {}", last_row));
   sections_.go_on(numbers[1], {numbers.begin() + 2, numbers.end()});
 }
 

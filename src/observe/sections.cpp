@@ -79,7 +79,7 @@ template <int Dim>
 void Sections<Dim>::go_on(double time, const std::vector<double>& values) {
   since_ = time;
   for (std::size_t k = 0; k < sections_.size(); ++k)
-    sections_[k].total = std::llround(values.at(2 * k + 1) / (spacing_ * spacing_));
+    sections_[k].total = std::llround(values[2 * k + 1] / (spacing_ * spacing_));
 }
 
 template <int Dim>

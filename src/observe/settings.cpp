@@ -43,6 +43,9 @@ double length_of(const Numbers& x, int dimension) {
   return std::sqrt(sum);
 }
 
+/// True where a vector of this length has a direction.
+bool is_length(double x) { return x > 0.0 && std::isfinite(x); }
+
 template <int Dim>
 std::string box_text(const Box<Dim>& box) {
   return fmt::format("from ({:.6g}) to ({:.6g}) m", fmt::join(box.low.component, ", "),
@@ -129,16 +132,16 @@ void check_observers(Keys& keys, int dimension, const ObserverSettings& settings
   check_names(keys, settings.sections);
   constexpr const char* no_direction = "no direction; allowed: a vector that is not 0";
   for (const ProbeSettings& probe : settings.probes)
-    if (keys.usable(probe.normal) && length_of(probe.normal, dimension) == 0.0)
+    if (keys.usable(probe.normal) && !is_length(length_of(probe.normal, dimension)))
       keys.mistake(probe.normal, no_direction);
   for (const GaugeSettings& gauge : settings.gauges)
-    if (keys.usable(gauge.direction) && length_of(gauge.direction, dimension) == 0.0)
+    if (keys.usable(gauge.direction) && !is_length(length_of(gauge.direction, dimension)))
       keys.mistake(gauge.direction, no_direction);
   for (const SectionSettings& section : settings.sections) {
     if (!keys.usable(section.begin, section.end)) continue;
     if (dimension != 2) {
       keys.mistake(section.begin, "a section is a line in two dimensions; allowed: none in three");
-    } else if (section.begin == section.end) {
+    } else if (!is_length(length_of({section.end[0] - section.begin[0], section.end[1] - section.begin[1]}, 2))) {
       keys.mistake(section.end, "the line has no length; allowed: another point than its begin");
     }
   }

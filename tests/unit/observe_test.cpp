@@ -312,6 +312,9 @@ TEST(Observers, SectionsGoOnFromTheirLastRow) {
   ASSERT_EQ(observers.headers().size(), 1u);
   EXPECT_EQ(observers.headers()[0].kind, "sections");
   EXPECT_EQ(observers.headers()[0].text, "step,t [s],s [m^2/s],total_s [m^2]");
+  observers.go_on("");
+  for (const char* row : {"5,0.5,2", "5,0.5,2,nan", "5,0.5,2,1e300"})
+    EXPECT_THROW(observers.go_on(row), FileError) << row;
   observers.go_on("5,0.5,2,0.25");
   EXPECT_TRUE(observers.rows_for_restart(report).empty());  // the file has it
   report.step = 6;

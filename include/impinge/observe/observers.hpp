@@ -30,7 +30,8 @@ class Observers {
   /// The tables that have columns, each with its header.
   std::vector<TableLine> headers() const;
 
-  /// Goes on from the last row of the table of sections, on all ranks; empty: there is none.
+  /// Goes on from the last row of the table of sections, on all ranks; empty: there is none. Throws FileError for a row
+  /// that is none of it.
   void go_on(const std::string& last_row);
 
   /// To be called after each step. Gives the rows that are due, the same on all ranks. Collective.

@@ -29,7 +29,8 @@ class Sections {
   /// Names and units of the values.
   std::vector<std::string> columns() const;
 
-  /// Takes the totals of a table's last row, and its time [s] as the one that the next discharge begins at.
+  /// Takes the totals of a table's last row, a value per column, and its time [s] as the one that the next discharge
+  /// begins at.
   void go_on(double time, const std::vector<double>& values);
 
   /// Counts what has crossed since the last call, whichever ranks the particles were on. To be called after each step.
