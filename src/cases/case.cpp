@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "impinge/core/errors.hpp"
+#include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
 namespace {
@@ -31,6 +32,7 @@ void declare(Keys& keys, Case& c) {
            {.unit = "s", .range = not_negative});
   keys.add("output.average_start", c.average_start, "start of the time average of the wall pressure",
            {.unit = "s", .range = not_negative, .fallback = "0.8 x time.end"});
+  declare_observers(keys, c);
   keys.add("checkpoint.steps", c.checkpoint.steps,
            "steps from one checkpoint to the next; 0: none by steps. With any of these keys, a run also ends with one",
            {.range = from_to(0, 1e9)});
@@ -59,6 +61,7 @@ void derive(const Keys& keys, Case& c, const SceneInputs& inputs, const std::str
   c.spacing_place = keys.place(c.particles.spacing);
   if (!keys.given(c.average_start)) c.average_start = 0.8 * c.time.end;
   derive_scene(keys, c, inputs);
+  derive_observers(keys, c.dimension, c);
   derive_method(keys, c, reference_speed(keys, c, inputs));
 }
 
@@ -84,6 +87,11 @@ void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
   }
   check_method(keys, c);
   check_scene(keys, c, inputs);
+  if (!keys.usable(c.dimension) || !c.observes()) return;
+  const bool has_scene = keys.is_sound();
+  check_observers(keys, c.dimension, c);
+  if (has_scene && c.dimension == 2) check_observers_in(keys, make_scene<2>(c, c), c.particles.spacing, c);
+  if (has_scene && c.dimension == 3) check_observers_in(keys, make_scene<3>(c, c), c.particles.spacing, c);
 }
 
 /// Names and values of the keys that a restart cannot change.

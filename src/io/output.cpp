@@ -23,12 +23,15 @@ std::string file_name(const std::string& path) { return fs::path(path).filename(
 
 }  // namespace
 
-Output::Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restart_step)
+Output::Output(MPI_Comm comm, RunFiles files, const std::vector<TableLine>& observed,
+               std::optional<std::int64_t> restart_step)
     : comm_(comm),
       files_(std::move(files)),
       history_(history_path(files_.directory, files_.name), history_header()),
       series_(series_path(files_.directory, files_.name), file_series_path(files_.directory, files_.name),
               files_.name) {
+  for (const auto& [kind, header] : observed)
+    tables_.emplace_back(kind, TableFile(table_path(files_.directory, files_.name, kind), header));
   std::vector<std::string> mistakes;
   on_first_rank(comm, [&] {
     try {
@@ -45,13 +48,19 @@ Output::Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restar
     } else {
       start();
     }
-    history_.check();
+    check_tables();
   });
 }
 
 void Output::start() {
   if (holds_run(files_.directory, files_.name)) set_aside_ = set_run_aside(files_.directory, files_.name);
   history_.create();
+  for (auto& [kind, table] : tables_) table.create();
+}
+
+void Output::check_tables() const {
+  history_.check();
+  for (const auto& [kind, table] : tables_) table.check();
 }
 
 // What was written after the step belongs to a future that will be computed again.
@@ -69,11 +78,25 @@ void Output::go_on(std::int64_t step) {
   }
   if (const std::int64_t rows = history_.resume(step); rows != step)
     fmt::print(stderr, "impinge: {} has {} of the {} steps so far\n", history_.path(), rows, step);
+  for (auto& [kind, table] : tables_) table.resume(step);
 }
 
 void Output::record(const StepReport& report, double seconds) {
   history_.append(history_row(report, seconds));
   lock_.beat();
+}
+
+void Output::record(const std::vector<TableLine>& rows) {
+  for (const auto& [kind, row] : rows)
+    for (auto& [name, table] : tables_)
+      if (name == kind) table.append(row);
+}
+
+std::string Output::last_row(const std::string& kind) const {
+  std::string row;
+  for (const auto& [name, table] : tables_)
+    if (name == kind) row = table.last_row();
+  return broadcast(comm_, row, 0);
 }
 
 template <int Dim>
@@ -100,7 +123,7 @@ std::string Output::save(const Simulation<Dim>& simulation, const std::string& s
   series_.add(file_name(path), report.time,
               sum_over_ranks(comm_, static_cast<std::int64_t>(simulation.particles().owned)));
   on_first_rank(comm_, [&] {
-    history_.check();
+    check_tables();
     series_.write();
   });
   return path;
@@ -108,7 +131,10 @@ std::string Output::save(const Simulation<Dim>& simulation, const std::string& s
 
 template <int Dim>
 std::string Output::save_checkpoint(const Simulation<Dim>& simulation) {
-  on_first_rank(comm_, [&] { history_.synchronise(); });  // a restart needs the history up to here
+  on_first_rank(comm_, [&] {  // a restart needs the tables up to here
+    history_.synchronise();
+    for (const auto& [kind, table] : tables_) table.synchronise();
+  });
   const std::string path = checkpoint_path(files_.directory, files_.name, simulation.report().step);
   write_checkpoint(comm_, path, simulation.checkpoint(), header(simulation, "running", ""));
   on_first_rank(comm_, [&] {

@@ -73,8 +73,12 @@ std::string checkpoint_path(const std::string& directory, const std::string& nam
   return path_of_step(directory, name, step, checkpoint_ending);
 }
 
+std::string table_path(const std::string& directory, const std::string& name, const std::string& kind) {
+  return path_of(directory, fmt::format("{}_{}.csv", name, kind));
+}
+
 std::string history_path(const std::string& directory, const std::string& name) {
-  return path_of(directory, name + "_history.csv");
+  return table_path(directory, name, "history");
 }
 
 std::string series_path(const std::string& directory, const std::string& name) {
@@ -131,9 +135,12 @@ std::string set_run_aside(const std::string& directory, const std::string& name)
   for (int k = 2; !fs::create_directory(folder, error) && !error; ++k) folder = fmt::format("{}_{}", stem.string(), k);
   std::vector<std::string> files = list_snapshots(directory, name);
   for (std::string& path : list_checkpoints(directory, name)) files.push_back(std::move(path));
-  for (const std::string& path : {history_path(directory, name), series_path(directory, name),
-                                  file_series_path(directory, name), (fs::path(directory) / "validation").string()})
-    if (fs::exists(path)) files.push_back(path);
+  std::vector<std::string> others{series_path(directory, name), file_series_path(directory, name)};
+  for (const std::string& own : {std::string("validation"), name + "_figures"})
+    others.push_back(path_of(directory, own));
+  for (const char* kind : table_kinds) others.push_back(table_path(directory, name, kind));
+  for (std::string& path : others)
+    if (fs::exists(path)) files.push_back(std::move(path));
   for (const std::string& path : files)
     if (!error) fs::rename(path, folder / fs::path(path).filename(), error);
   if (error) throw FileError(fmt::format("cannot set the earlier run in {} aside: {}", directory, error.message()));

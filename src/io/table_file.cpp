@@ -51,6 +51,7 @@ std::int64_t TableFile::resume(std::int64_t step) {
     if (next <= last || next > step) break;
     last = next;
     text += line + '\n';
+    last_row_ = line;
     ++rows;
   }
   old.close();

@@ -121,6 +121,8 @@ void declare_method(Keys& keys, MethodSettings& s) {
             .fallback = "20 x the jet's speed after its fall to the plate, sqrt(2 |gravity| tank.fluid_height), "
                         "periodic_box.shear_speed or that of the regions"});
 
+  declare_damping(keys, s.damping);
+
   for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
     std::string& text = keys.of(setting).about.fallback;
     text = fmt::format("{}; paper: {}{}{}", value_text(consistent), value_text(paper), text.empty() ? "" : "; ", text);
@@ -131,6 +133,7 @@ void derive_method(const Keys& keys, MethodSettings& s, double reference_speed) 
   for_scheme_defaults(s, [&](auto& setting, auto consistent, auto paper) {
     if (!keys.given(setting)) setting = s.scheme == Scheme::consistent ? consistent : paper;
   });
+  derive_damping(keys, s.damping);
   if (keys.given(s.pressure.gamma) && !keys.given(s.pressure.density_rate)) s.pressure.density_rate = 0.0;
   if (!keys.given(s.time.max_speed)) {
     if (reference_speed == 0.0 && keys.usable(s.particles.spacing, s.time.dt))
@@ -140,6 +143,7 @@ void derive_method(const Keys& keys, MethodSettings& s, double reference_speed) 
 }
 
 void check_method(Keys& keys, const MethodSettings& s) {
+  if (keys.usable(s.dimension)) check_damping(keys, s.dimension, s.damping);
   for (std::size_t k = 1; k < s.fluid.gravity_at.size(); ++k) {
     const GravityEntry &before = s.fluid.gravity_at[k - 1], &here = s.fluid.gravity_at[k];
     if (keys.usable(before.time, here.time) && here.time <= before.time)

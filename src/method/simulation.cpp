@@ -46,7 +46,8 @@ Simulation<Dim>::Simulation(MPI_Comm comm, const MethodSettings& settings, Scene
       settings_(settings),
       scene_(std::move(scene)),
       state_(make_state(comm, settings, scene_)),
-      projection_(comm, settings_, state_.decomposition.cells()) {
+      projection_(comm, settings_, state_.decomposition.cells()),
+      damping_(settings_.damping) {
   if (checkpoint) {
     restore(*checkpoint);
     return;
@@ -112,7 +113,7 @@ void Simulation<Dim>::try_step(double target) {
   {
     const PhaseLog log(Phase::predict);
     set_inlets(report_.time + 0.5 * report_.dt, scene_.inlets, state_.particles);
-    accelerate(rule, force, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
+    accelerate(rule, force, damping_, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
     collide(settings_.collision, spacing, report_.dt, state_);
     advance(rule.before, scene_.inlets, state_.particles);
   }

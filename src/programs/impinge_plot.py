@@ -1,9 +1,14 @@
 #!/usr/bin/env python3
-"""Draws a run of a jet case beside the analytic jet.
+"""Draws a run.
 
-impinge-plot DIR reads DIR/validation (what impinge-validate wrote) and the last snapshot in DIR, and writes
-pressure.png, wall_pressure.png, film_thickness.png and ranks.png into DIR/validation. Needs h5py and matplotlib: of the
-first python3 on the PATH, else of the system's. Exit code 3: neither has them.
+impinge-plot DIR draws a snapshot in DIR, the last or the one that --step or --time names, and the tables of the run:
+pressure.png, speed.png, surface.png, and history.png, probes.png, gauges.png, sections.png, forces.png where there is
+such a table, into DIR/<case>_figures. In three dimensions it draws a slice.
+
+If DIR/validation holds what impinge-validate wrote of a jet, it also draws the jet beside the analytic one:
+pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation.
+
+Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's. Exit code 3: neither has them.
 """
 
 import argparse
@@ -11,6 +16,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import sys
 
 try:
@@ -28,6 +34,11 @@ except ImportError as error:
     print(f"impinge-plot: {error}; {sys.executable} needs the packages h5py and matplotlib", file=sys.stderr)
     sys.exit(3)
 
+try:
+    import tomllib
+except ImportError:
+    tomllib = None
+
 FLUID, INLET, WALL, GHOST = range(4)
 COMPUTED, ANALYTIC = "#1f5fa8", "#c0392b"
 LABELLED_CP = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -43,7 +54,7 @@ def read_table(path):
     return dict(zip(rows[0], values.T))
 
 
-class Run:
+class JetRun:
     """The report, the analytic lines and the last snapshot of a run; x and y in jet widths."""
 
     def __init__(self, directory):
@@ -96,9 +107,9 @@ class Run:
         print(f"figure     {path}")
 
 
-def draw_particles(axes, run, chosen, **colours):
-    """Discs of area dp^2 at the chosen particles."""
-    size = np.full(np.count_nonzero(chosen), run.spacing * 2 / np.sqrt(np.pi))
+def draw_particles(axes, run, chosen, scale=1.0, **colours):
+    """Discs of area dp^2 at the chosen particles, or larger by a factor."""
+    size = np.full(np.count_nonzero(chosen), scale * run.spacing * 2 / np.sqrt(np.pi))
     discs = EllipseCollection(
         size, size, np.zeros_like(size), units="xy", offsets=run.position[chosen], offset_transform=axes.transData,
         linewidths=0, **colours,
@@ -206,15 +217,257 @@ def plot_ranks(run):
     run.save(figure, "ranks.png")
 
 
+class Snapshot:
+    """The particles of a snapshot, in metres; of three dimensions those of a slice through the middle."""
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as file:
+            data = file["VTKHDF/PointData"]
+            points, velocity = file["VTKHDF/Points"][:], data["velocity"][:]
+            self.pressure, self.type = data["pressure"][:], data["type"][:]
+            self.free_surface = data["free_surface"][:].astype(bool)
+            self.time, self.step, self.status = file.attrs["time"], int(file.attrs["step"]), text(file.attrs["status"])
+            self.dimension = int(file.attrs["dimension"])
+            self.case = text(file.attrs["case"])
+        self.spacing = float(re.search(r"^\[particles\][^\[]*?^spacing = (\S+)", self.case, re.M | re.S)[1])
+        self.speed = np.linalg.norm(velocity, axis=1)
+        finite = np.isfinite(points).all(axis=1)
+        self.not_drawn = np.count_nonzero(~finite)
+        self.axes, self.slice = ("x", "y"), ""
+        drawn = finite
+        if self.dimension == 3:
+            middle = 0.5 * (points[finite, 1].min() + points[finite, 1].max()) if finite.any() else 0.0
+            drawn = finite & (np.abs(points[:, 1] - middle) <= 0.5 * self.spacing)
+            points = points[:, [0, 2]]
+            self.axes, self.slice = ("x", "z"), f", slice at y = {middle:.4g} m"
+        self.position = points[drawn, :2]
+        for name in ("pressure", "type", "free_surface", "speed"):
+            setattr(self, name, getattr(self, name)[drawn])
+        self.fluid = np.isin(self.type, (FLUID, INLET))
+        if not self.position.size:
+            raise ValueError(f"{path} has no particle to draw")
+        margin = 3 * self.spacing
+        self.low, self.high = self.position.min(axis=0) - margin, self.position.max(axis=0) + margin
+
+
+def text(attribute):
+    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
+
+
+def snapshots_of(directory, name):
+    """The paths of the snapshots of the only case in a directory, or of the case `name`, by step; and its name."""
+    found = {}
+    for path in directory.glob("*.vtkhdf"):
+        match = re.fullmatch(r"(.+)_(\d{8,18})\.vtkhdf", path.name)
+        if match and name in (None, match[1]):
+            found.setdefault(match[1], {})[int(match[2])] = path
+    if len(found) > 1:
+        raise ValueError(f"{directory} has runs of several cases: {', '.join(sorted(found))}; choose one by --name")
+    if not found:
+        raise ValueError(f"{directory} has no snapshot" + (f" of {name}" if name else ""))
+    ((case, snapshots),) = found.items()
+    return case, dict(sorted(snapshots.items()))
+
+
+def choose(snapshots, step, time):
+    """The snapshot of a step, the one nearest to a time, or the last."""
+    if step is not None:
+        if step not in snapshots:
+            raise ValueError(f"no snapshot of step {step}; there are {', '.join(map(str, snapshots))}")
+        return snapshots[step]
+    if time is None:
+        return list(snapshots.values())[-1]
+
+    def distance(path):
+        with h5py.File(path, "r") as file:
+            return abs(file.attrs["time"] - time)
+
+    return min(snapshots.values(), key=distance)
+
+
+class Figures:
+    """Draws a run whatever its scene, into DIR/<case>_figures."""
+
+    def __init__(self, directory, name, step, time):
+        self.case, snapshots = snapshots_of(directory, name)
+        self.directory = directory
+        self.snapshot = Snapshot(choose(snapshots, step, time))
+        self.ending = "" if step is None and time is None else f"_{self.snapshot.step:08}"
+        self.folder = directory / f"{self.case}_figures"
+        self.folder.mkdir(exist_ok=True)
+
+    def draw(self):
+        self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "turbo")
+        self.field("speed", self.snapshot.speed, "speed [m/s]", "viridis")
+        self.surface()
+        self.history()
+        for kind, panels in TABLES.items():
+            self.curves(kind, panels)
+
+    def save(self, figure, name):
+        path = self.folder / name
+        figure.savefig(path, bbox_inches="tight")
+        plt.close(figure)
+        print(f"figure     {path}")
+
+    def panel(self):
+        """A figure of the scene's shape, with the walls drawn."""
+        width, height = self.snapshot.high - self.snapshot.low
+        figure, axes = plt.subplots(layout="constrained", figsize=(8, min(9, max(2, 7 * height / width)) + 0.8))
+        snapshot = self.snapshot
+        walls = np.isin(snapshot.type, (WALL, GHOST))
+        # Without ghosts, wall particles stand on the surface.
+        draw_particles(axes, snapshot, walls, 1.0 if np.any(snapshot.type == GHOST) else 0.6, facecolors="0.35")
+        axes.set(xlim=(snapshot.low[0], snapshot.high[0]), ylim=(snapshot.low[1], snapshot.high[1]), aspect="equal",
+                 xlabel=f"{snapshot.axes[0]} [m]", ylabel=f"{snapshot.axes[1]} [m]")
+        missing = f"; {snapshot.not_drawn} particles not finite" if snapshot.not_drawn else ""
+        status = "" if snapshot.status in ("finished", "running") else f" ({snapshot.status})"
+        axes.set_title(f"{self.case}: t = {snapshot.time:.4g} s, step {snapshot.step}{status}{snapshot.slice}{missing}", fontsize=10)
+        return figure, axes
+
+    def field(self, name, values, label, colours):
+        figure, axes = self.panel()
+        chosen = self.snapshot.fluid & np.isfinite(values)
+        inside = values[chosen]
+        low, high = (min(0.0, np.quantile(inside, 0.002)), np.quantile(inside, 0.998)) if inside.size else (0.0, 1.0)
+        norm = plt.Normalize(low, high if high > low else low + 1.0)
+        discs = draw_particles(axes, self.snapshot, chosen, array=inside, cmap=colours, norm=norm)
+        largest = f", {inside.min():.4g} to {inside.max():.4g}" if inside.size else ", no fluid"
+        figure.colorbar(discs, ax=axes, shrink=0.8, extend="both", label=label + largest)
+        self.save(figure, f"{name}{self.ending}.png")
+
+    def surface(self):
+        figure, axes = self.panel()
+        snapshot = self.snapshot
+        on_surface = snapshot.fluid & snapshot.free_surface
+        draw_particles(axes, snapshot, snapshot.fluid & ~on_surface, facecolors="#b8d4ee")
+        draw_particles(axes, snapshot, on_surface, facecolors=ANALYTIC)
+        for colour, label in (("#b8d4ee", "fluid"), (ANALYTIC, "free surface"), ("0.35", "walls")):
+            axes.plot([], [], "o", color=colour, label=label)
+        self.mark_observers(axes)
+        axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
+        self.save(figure, f"surface{self.ending}.png")
+
+    def mark_observers(self, axes):
+        """Fixed probes, gauges and sections, where Python can read TOML."""
+        case = tomllib.loads(self.snapshot.case) if tomllib else {}
+        seen = [0, 2] if self.snapshot.dimension == 3 else [0, 1]
+
+        def corner(vector):
+            return np.array(vector, dtype=float)[seen]
+
+        for probe in case.get("probe", []):
+            if probe["wall"] == "none":
+                axes.plot(*corner(probe["position"]), "x", color="black", ms=7, mew=1.5)
+        lines = [(gauge["point"], gauge["point"] + gauge["length"] * np.array(gauge["direction"]) / np.linalg.norm(gauge["direction"]), "--")
+                 for gauge in case.get("gauge", [])]
+        lines += [(section["begin"], section["end"], ":") for section in case.get("section", [])]
+        for begin, end, style in lines:
+            axes.plot(*zip(corner(begin), corner(end)), style, color="black", lw=1)
+        for kind, style in (("probe", "x"), ("gauge", "--"), ("section", ":")):
+            if case.get(kind):
+                axes.plot([], [], style, color="black", label=kind)
+
+    def table(self, kind):
+        path = self.directory / f"{self.case}_{kind}.csv"
+        if not path.exists():
+            return None
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        rows = [row for row in rows if len(row) == len(rows[0])]  # without a line that was broken off
+        return {name: np.array([number(row[k]) for row in rows[1:]]) for k, name in enumerate(rows[0])}
+
+    def history(self):
+        table = self.table("history")
+        if not table or not table["t"].size:
+            return
+        panels = [("kinetic_energy", "kinetic energy [J; 2D: J/m]"), ("max_speed", "largest speed [m/s]"),
+                  ("plate_force", "plate, floor [N; 2D: N/m]")]
+        panels = [panel for panel in panels if np.any(table[panel[0]] != 0.0)] or panels[:1]
+        figure, all_axes = self.stack(len(panels))
+        for axes, (name, label) in zip(all_axes, panels):
+            axes.plot(table["t"], table[name], color=COMPUTED, lw=1)
+            axes.set_ylabel(label)
+        self.save(figure, "history.png")
+
+    def stack(self, count):
+        figure, axes = plt.subplots(count, 1, sharex=True, squeeze=False, layout="constrained", figsize=(8, 1 + 2.4 * count))
+        axes[0, 0].set_title(self.case, fontsize=10)
+        axes[-1, 0].set_xlabel("t [s]")
+        return figure, axes[:, 0]
+
+    def curves(self, kind, panels):
+        """The columns of a table, those of one prefix and unit in a panel."""
+        table = self.table(kind)
+        if not table or not table["t [s]"].size:
+            return
+        drawn = []
+        for prefix, unit, label in panels:
+            form = re.compile(re.escape(prefix) + r"(.+) \[" + re.escape(unit) + r"\]")
+            if unit == "m^2/s":
+                label, table = smooth_discharge(label, table)
+            found = [(match[1], table[name]) for name in table if name != "t [s]" and (match := form.fullmatch(name))]
+            if found and any(np.isfinite(values).any() for _, values in found):
+                drawn.append((f"{label} [{unit}]", found))
+        if not drawn:
+            return
+        figure, all_axes = self.stack(len(drawn))
+        for axes, (label, lines) in zip(all_axes, drawn):
+            for name, values in lines:
+                axes.plot(table["t [s]"], values, lw=1, label=name)
+            axes.set_ylabel(label)
+            axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=8)
+        self.save(figure, f"{kind}.png")
+
+
+# Of each table, the panels: prefix and unit of their columns, and what they show.
+TABLES = {
+    "probes": [("p_", "Pa", "pressure"), ("ux_", "m/s", "$u_x$"), ("uy_", "m/s", "$u_y$"), ("uz_", "m/s", "$u_z$")],
+    "gauges": [("", "m", "level")],
+    "sections": [("", "m^2/s", "discharge"), ("total_", "m^2", "total")],
+    "forces": [("fx_", "N/m", "$F_x$"), ("fy_", "N/m", "$F_y$"), ("torque_", "N", "torque")],
+}
+
+
+def smooth_discharge(label, table):
+    """Discharges from the totals over a twentieth of the run, since a row counts single particles."""
+    time = table["t [s]"]
+    window = (time[-1] - time[0]) / 20
+    smooth = dict(table)
+    for name in table:
+        if name.startswith("total_") and window > 0:
+            begin, end = np.clip(time - window / 2, time[0], time[-1]), np.clip(time + window / 2, time[0], time[-1])
+            change = np.interp(end, time, table[name]) - np.interp(begin, time, table[name])
+            smooth[name.removeprefix("total_").replace("[m^2]", "[m^2/s]")] = change / (end - begin)
+    return f"{label}, over {window:.2g} s", smooth
+
+
+def number(cell):
+    """A cell's number; words are none."""
+    try:
+        return float(cell)
+    except ValueError:
+        return np.nan
+
+
 def main():
     parser = argparse.ArgumentParser(
-        prog="impinge-plot", description="Draws a run that impinge-validate has measured; figures go to DIR/validation."
+        prog="impinge-plot",
+        description="Draws a snapshot and the tables of a run into DIR/<case>_figures, and a jet that impinge-validate "
+        "has measured beside the analytic one into DIR/validation.",
     )
     parser.add_argument("directory", metavar="DIR", type=pathlib.Path, help="output directory of the run")
+    parser.add_argument("--name", help="case, where the directory has several")
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument("--step", type=int, help="step of the snapshot; default: the last")
+    chosen.add_argument("--time", type=float, help="time that the snapshot is nearest to [s]")
+    arguments = parser.parse_args()
     try:
-        run = Run(parser.parse_args().directory)
-        for plot in (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks):
-            plot(run)
+        if (arguments.directory / "validation/validation.json").exists():
+            run = JetRun(arguments.directory)
+            for plot in (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks):
+                plot(run)
+        Figures(arguments.directory, arguments.name, arguments.step, arguments.time).draw()
     except (OSError, KeyError, ValueError) as error:
         sys.exit(f"impinge-plot: {error}")
 

@@ -19,6 +19,7 @@
 #include "impinge/io/run_directory.hpp"
 #include "impinge/io/snapshot.hpp"
 #include "impinge/io/together.hpp"
+#include "impinge/observe/observers.hpp"
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/memory_check.hpp"
 #include "impinge/programs/plan.hpp"
@@ -215,9 +216,15 @@ class Interruptions {
   Clock::time_point last_ = Clock::now();
 };
 
+template <int Dim>
+Observers<Dim> observers_of(MPI_Comm comm, const Case& config, const Simulation<Dim>& simulation) {
+  return Observers<Dim>(comm, config, config, make_scene<Dim>(config, config), simulation.particles(),
+                        simulation.report());
+}
+
 /// Runs from where the simulation is to the case's end. Returns false where a signal ended the run before. Collective.
 template <int Dim>
-bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output& output) {
+bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observers<Dim>& observers, Output& output) {
   const bool first = rank_of(comm) == 0;
   const auto start = Clock::now();
   const StepReport& report = simulation.report();
@@ -242,6 +249,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
       throw;
     }
     output.record(report, seconds_since(step_start));
+    output.record(observers.observe(simulation.particles(), report));
     if (!options_checked && (report.pressure.iterations > 0 || finished())) {
       refuse_unused_options(comm, simulation.pressure_solver().default_options());
       options_checked = true;
@@ -255,6 +263,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Output&
     }
     const Interruptions::Kind interruption = interruptions.after_step(report);
     if (finished() ? has_checkpoints : interruption != Interruptions::none) {
+      output.record(observers.rows_for_restart(report));
       const std::string path = output.save_checkpoint(simulation);
       if (interruption == Interruptions::stop && !finished()) {
         const char* signal = signal_name(interruptions.signal());
@@ -309,14 +318,15 @@ bool start_run(MPI_Comm comm, const Case& config) {
   on_first_rank(comm, [&] { has_earlier_run = holds_run(config.output.directory, config.name); });
   if (any_rank(comm, has_earlier_run)) try_first_step<Dim>(comm, config);
   auto simulation = make_simulation<Dim>(comm, config);
-  Output output(comm, files_of(config));
+  Observers<Dim> observers = observers_of(comm, config, simulation);
+  Output output(comm, files_of(config), observers.headers());
   if (first && !output.set_aside().empty())
     fmt::print("the earlier run of this case is now in {}\n", output.set_aside());
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
   output.save(simulation, "running");
-  return run(comm, config, simulation, output);
+  return run(comm, config, simulation, observers, output);
 }
 
 template <int Dim>
@@ -332,12 +342,14 @@ template <int Dim>
 bool go_on(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation) {
   const StepReport& report = simulation.report();
   check_output(comm, config);
-  Output output(comm, files_of(config), report.step);
+  Observers<Dim> observers = observers_of(comm, config, simulation);
+  Output output(comm, files_of(config), observers.headers(), report.step);
+  observers.go_on(output.last_row("sections"));
   if (rank_of(comm) == 0)
     fmt::print("impinge {}: {} from step {}, t = {:.6g} s, to t = {} s with {} particles on {} rank(s), output in {}\n",
                IMPINGE_VERSION, config.name, report.step, report.time, config.time.end, report.particles,
                ranks_of(comm), config.output.directory);
-  return run(comm, config, simulation, output);
+  return run(comm, config, simulation, observers, output);
 }
 
 /// The checkpoints in a directory, the last one first. Throws InputError where there are none or they are of several

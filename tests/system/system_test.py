@@ -471,6 +471,73 @@ class Run(System):
                      "film_thickness.csv"):
             self.assertTrue((validation / name).stat().st_size > 0, name)
 
+    def test_what_is_observed_goes_on_after_a_restart_and_is_drawn(self):
+        path = self.directory / "column.toml"
+        path.write_text("""geometry = "tank"
+particles.spacing = 0.04
+fluid.gravity = [0, -9.81]
+tank.size = [1.0, 0.6]
+time = {end = 0.2, dt = 2e-3}
+[[fluid.region]]
+shape = "box"
+low = [0, 0]
+high = [0.4, 0.32]
+[[probe]]
+name = "floor"
+position = [0.2, 0]
+[[gauge]]
+point = [0.2, 0]
+length = 0.6
+[[section]]
+name = "gate"
+begin = [0.4, 0]
+end = [0.4, 0.6]
+""")
+        names = [f"column_{kind}.csv" for kind in ("history", "probes", "gauges", "sections")]
+
+        def run(*words):
+            done = impinge(*words, cwd=self.directory, ranks=2)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+        def tables(out):
+            return {name: (self.directory / out / name).read_text() for name in names[1:]}
+
+        sampled = ["--set", "output.sample_interval=0.03", "--set", "checkpoint.steps=50"]
+        run(path, "--set", "output.directory=whole", *sampled)
+        # As if it had been killed after its last row.
+        shutil.copytree(self.directory / "whole", self.directory / "parts")
+        (self.directory / "parts/column_00000100.checkpoint").unlink()
+        run("--restart", "parts")
+        whole = tables("whole")
+        steps = [int(line.split(",")[0]) for line in whole["column_sections.csv"].splitlines()[1:]]
+        self.assertEqual(steps, [15, 30, 45, 50, 60, 75, 90, 100])
+        self.assertTrue(whole["column_probes.csv"].startswith("step,t [s],p_floor [Pa],ux_floor [m/s],uy_floor [m/s]\n"))
+        self.assertEqual(len(whole["column_probes.csv"].splitlines()), 7)
+        self.assertGreater(float(whole["column_sections.csv"].split(",")[-1]), 0.01)
+        self.assertEqual(tables("parts"), whole)
+        # A restart does not change what is observed.
+        refused = impinge("--restart", "parts", "--set", "time.end=0.3", "--set", "gauge[1].length=0.5", cwd=self.directory)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("gauge[1].length = 0.5: a restart cannot change this key", refused.stderr)
+
+        done = call(BIN / "impinge-plot", "parts", cwd=self.directory)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        figures = ["gauges.png", "history.png", "pressure.png", "probes.png", "sections.png", "speed.png", "surface.png"]
+        self.assertEqual(sorted(file.name for file in (self.directory / "parts/column_figures").iterdir()), figures)
+        done = call(BIN / "impinge-plot", "parts", "--time", "0.01", cwd=self.directory)
+        self.assertIn("column_figures/speed_00000000.png", done.stdout)
+        for words, message in ((["--step", "3"], "no snapshot of step 3"), (["--name", "other"], "no snapshot of other")):
+            done = call(BIN / "impinge-plot", "parts", *words, cwd=self.directory)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(message, done.stderr)
+        # A new run sets all of it aside.
+        run(path, "--set", "output.directory=parts", "--set", "time.end=0.01")
+        (aside,) = (self.directory / "parts").glob("column_before_*")
+        for name in [*names, "column_figures"]:
+            self.assertTrue((aside / name).exists(), name)
+        self.assertFalse((self.directory / "parts/column_figures").exists())
+        self.assertEqual(len((self.directory / "parts/column_gauges.csv").read_text().splitlines()), 6)
+
     def test_a_report_without_figures_is_complete(self):
         self.run_case("--set", "time.end=0.01")
         for module in ("h5py", "matplotlib"):

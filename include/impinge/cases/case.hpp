@@ -7,12 +7,13 @@
 #include "impinge/config/case_file.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/method/settings.hpp"
+#include "impinge/observe/settings.hpp"
 #include "impinge/scenes/settings.hpp"
 
 namespace impinge {
 
 /// Every key of a case file.
-struct Case : MethodSettings, SceneSettings {
+struct Case : MethodSettings, SceneSettings, ObserverSettings {
   std::string name;           ///< default: the case file's stem
   std::string spacing_place;  ///< where particles.spacing was given, for messages
 

@@ -217,6 +217,9 @@ class Keys {
   int dimension() const { return *dimension_; }
   bool dimension_is_usable() const { return usable(*dimension_); }
 
+  /// True if no mistake has been found so far.
+  bool is_sound() const { return mistakes_.empty(); }
+
   void mistake(const Key& key, std::string_view what);
   void mistake(const Place& place, std::string_view text);
   /// Notes defaults that are out of range: extreme values of other keys can lead to them.

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "impinge/io/run_directory.hpp"
 #include "impinge/io/run_lock.hpp"
@@ -13,6 +15,7 @@
 #include "impinge/io/snapshot.hpp"
 #include "impinge/io/table_file.hpp"
 #include "impinge/method/simulation.hpp"
+#include "impinge/observe/observers.hpp"
 
 namespace impinge {
 
@@ -21,15 +24,17 @@ namespace impinge {
 ///   <name>.xmf             XDMF, the snapshots as a time series
 ///   <name>.vtkhdf.series   ParaView's file series, the same
 ///   <name>_history.csv     one row per step
+///   <name>_probes.csv, _gauges.csv, _sections.csv, _forces.csv  what is observed
 ///   <name>_<step>.checkpoint  the last two checkpoints
 ///   <name>.lock            who writes them, while the run lasts
 /// A new run moves the files of an earlier one of the same name into a folder of their own; a restarted one removes
-/// those after the step that it goes on from, and cuts the history there.
+/// those after the step that it goes on from, and cuts the tables there.
 class Output {
  public:
-  /// The directory exists. `restart_step`: of the checkpoint that the run goes on from. Collective. Throws FileError,
-  /// InputError where another process writes this run.
-  Output(MPI_Comm comm, RunFiles files, std::optional<std::int64_t> restart_step = {});
+  /// The directory exists. `observed`: the headers of the tables besides the history. `restart_step`: of the checkpoint
+  /// that the run goes on from. Collective. Throws FileError, InputError where another process writes this run.
+  Output(MPI_Comm comm, RunFiles files, const std::vector<TableLine>& observed = {},
+         std::optional<std::int64_t> restart_step = {});
 
   /// The folder that the files of an earlier run were moved to; empty if there were none. On rank 0.
   const std::string& set_aside() const { return set_aside_; }
@@ -37,6 +42,12 @@ class Output {
   /// Appends a row to the history. `seconds`: wall-clock time of the step. The next save throws what went wrong. Not
   /// collective.
   void record(const StepReport& report, double seconds);
+
+  /// Appends rows to the tables of what is observed, likewise.
+  void record(const std::vector<TableLine>& rows);
+
+  /// The last row before the step of the restart of such a table; empty if there is none. Collective.
+  std::string last_row(const std::string& kind) const;
 
   /// Writes a snapshot and puts it into the time series. Returns its path. Collective; throws FileError.
   template <int Dim>
@@ -49,6 +60,7 @@ class Output {
  private:
   void start();
   void go_on(std::int64_t step);
+  void check_tables() const;
   template <int Dim>
   SnapshotHeader header(const Simulation<Dim>& simulation, const std::string& status, const std::string& message) const;
 
@@ -56,7 +68,8 @@ class Output {
   RunFiles files_;
   RunLock lock_;  // on rank 0
   std::string set_aside_;
-  TableFile history_;  // open on rank 0
+  TableFile history_;                                      // open on rank 0
+  std::vector<std::pair<std::string, TableFile>> tables_;  // likewise, each with its kind
   Series series_;
 };
 

@@ -2,6 +2,7 @@
 // The files of a run: their names in its output directory, and how text files and names get onto the disk. Nothing here
 // is collective.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -21,6 +22,12 @@ std::string snapshot_path(const std::string& directory, const std::string& name,
 
 /// `<directory>/<name>_<step, 8 digits>.checkpoint`.
 std::string checkpoint_path(const std::string& directory, const std::string& name, std::int64_t step);
+
+/// Every kind of table: the history, and what is observed.
+inline constexpr std::array table_kinds{"history", "probes", "gauges", "sections", "forces"};
+
+/// `<directory>/<name>_<kind>.csv`.
+std::string table_path(const std::string& directory, const std::string& name, const std::string& kind);
 
 /// `<directory>/<name>_history.csv`.
 std::string history_path(const std::string& directory, const std::string& name);

@@ -23,6 +23,9 @@ class TableFile {
   /// one without rows. Throws FileError, also where the file has other columns.
   std::int64_t resume(std::int64_t step);
 
+  /// The last row that resume has kept; empty if there is none.
+  const std::string& last_row() const { return last_row_; }
+
   /// Appends a row, values separated by commas, if the table was created or resumed. A failure is kept for check.
   void append(const std::string& row);
 
@@ -38,6 +41,7 @@ class TableFile {
 
   std::string path_;
   std::string header_;
+  std::string last_row_;
   std::ofstream file_;
   std::string failure_;  // why a row could not be written
 };

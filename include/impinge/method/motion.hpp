@@ -3,6 +3,7 @@
 
 #include "impinge/boundaries/inlet.hpp"
 #include "impinge/method/body_force.hpp"
+#include "impinge/method/damping.hpp"
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"
 
@@ -22,11 +23,12 @@ struct MotionRule {
       : dt(dt_), before(time.mean_velocity ? 0.5 * dt_ : dt_), after(dt_ - before) {}
 };
 
-/// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step. `laplacian_factor`: 2 Dim/(n0 lambda)
-/// [1/m^2]. Positions are moved back by what advance() moves too far by the rule. Collective.
+/// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step, and what the damping takes.
+/// `laplacian_factor`: 2 Dim/(n0 lambda) [1/m^2]. Positions are moved back by what advance() moves too far by the rule.
+/// Collective.
 template <int Dim>
-void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, double viscosity, double laplacian_factor,
-                State<Dim>& state);
+void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping, double viscosity,
+                double laplacian_factor, State<Dim>& state);
 
 /// Fluid particles that are about to come too near to each other bounce. `spacing`: dp [m]. Collective.
 template <int Dim>

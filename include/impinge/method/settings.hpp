@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "impinge/config/key.hpp"
+#include "impinge/method/damping.hpp"
 #include "impinge/parallel/graph_partition.hpp"
 #include "impinge/particles/kernel.hpp"
 
@@ -100,6 +101,7 @@ struct MethodSettings {
   CollisionSettings collision;
   ShiftingSettings shifting;
   TimeSettings time;
+  std::vector<DampingSettings> damping;
   ParallelSettings parallel;
   Outside outside = Outside::remove;  ///< what happens to fluid that leaves the bounds; key domain.outside
   double average_start = 0.0;         ///< start of the wall-pressure average [s]; key output.average_start

@@ -100,6 +100,7 @@ class Simulation {
   Scene<Dim> scene_;  // its inlets move, its outlets count
   State<Dim> state_;
   Projection<Dim> projection_;
+  DampingZones<Dim> damping_;
   StepReport report_;
   AveragingWindow window_;
   WallTimes wall_times_;

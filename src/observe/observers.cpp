@@ -1,0 +1,102 @@
+#include "impinge/observe/observers.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "impinge/core/errors.hpp"
+
+namespace impinge {
+namespace {
+
+std::string header(const std::vector<std::string>& columns) {
+  return fmt::format("step,t [s],{}", fmt::join(columns, ","));
+}
+
+std::string row(const StepReport& report, const std::vector<double>& values) {
+  return fmt::format("{},{:.17g},{:.9g}", report.step, report.time, fmt::join(values, ","));
+}
+
+}  // namespace
+
+template <int Dim>
+Observers<Dim>::Observers(MPI_Comm comm, const ObserverSettings& settings, const MethodSettings& method,
+                          const Scene<Dim>& scene, const Particles<Dim>& particles, const StepReport& report)
+    : comm_(comm),
+      sampling_(settings.sampling),
+      probes_(settings.probes, scene, method.particles.spacing),
+      gauges_(settings.gauges, scene, method),
+      sections_(comm, settings.sections, scene, method.particles.spacing, particles, report.time),
+      forces_(scene),
+      last_time_(report.time),
+      last_step_(report.step) {}
+
+template <int Dim>
+std::vector<TableLine> Observers<Dim>::headers() const {
+  std::vector<TableLine> lines;
+  const auto add = [&](const char* kind, const auto& part) {
+    if (!part.empty()) lines.push_back({kind, header(part.columns())});
+  };
+  add("probes", probes_);
+  add("gauges", gauges_);
+  add("sections", sections_);
+  add("forces", forces_);
+  return lines;
+}
+
+template <int Dim>
+void Observers<Dim>::go_on(const std::string& last_row) {
+  std::vector<double> numbers;
+  std::istringstream cells(last_row);
+  for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::strtod(cell.c_str(), nullptr));
+  if (numbers.empty()) return;
+  constexpr double most = 1e15;  // larger ones are not counted exactly
+  const auto is_sound = [](double x) { return std::abs(x) < most; };
+  if (numbers.size() != 2 + sections_.columns().size() || !std::ranges::all_of(numbers, is_sound))
+    throw FileError(fmt::format("cannot continue the table of sections: its last row is {}", last_row));
+  sections_.go_on(numbers[1], {numbers.begin() + 2, numbers.end()});
+}
+
+// At the first step that ends at or after a multiple of the interval.
+template <int Dim>
+bool Observers<Dim>::is_due(const StepReport& report) const {
+  if (sampling_.steps > 0 && report.step % sampling_.steps == 0) return true;
+  constexpr double rounding = 1e-9;
+  const auto intervals = [&](double time) { return std::floor(time / sampling_.interval + rounding); };
+  return sampling_.interval > 0.0 && intervals(report.time) > intervals(last_time_);
+}
+
+template <int Dim>
+TableLine Observers<Dim>::section_row(const StepReport& report) {
+  last_step_ = report.step;
+  return {"sections", row(report, sections_.measure(report.time))};
+}
+
+template <int Dim>
+std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, const StepReport& report) {
+  if (!sections_.empty()) sections_.count(particles);
+  const bool due = is_due(report);
+  last_time_ = report.time;
+  if (!due) return {};
+  std::vector<TableLine> rows;
+  if (!probes_.empty()) rows.push_back({"probes", row(report, probes_.measure(comm_, particles, report.time))});
+  if (!gauges_.empty()) rows.push_back({"gauges", row(report, gauges_.measure(comm_, particles))});
+  if (!sections_.empty()) rows.push_back(section_row(report));
+  if (!forces_.empty()) rows.push_back({"forces", row(report, forces_.measure(comm_, particles, report.time))});
+  return rows;
+}
+
+template <int Dim>
+std::vector<TableLine> Observers<Dim>::rows_for_restart(const StepReport& report) {
+  if (sections_.empty() || last_step_ == report.step) return {};
+  return {section_row(report)};
+}
+
+template class Observers<2>;
+template class Observers<3>;
+
+}  // namespace impinge
