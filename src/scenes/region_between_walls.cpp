@@ -63,11 +63,14 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     const double depth = wet.depth(candidate.point.position) / spacing;
     is_cut_ |= std::abs(depth - 0.5) > 10.0 * rounding;
     if (depth < least_depth) {
+      // On a plate, to one side or the other.
+      const double side = candidate.order % 2 == 0 ? 1.0 : -1.0;
+      const Vector<2> near = candidate.point.position + 2.0 * side * step * spacing * Vector<2>{{0.8, 0.6}};
       Vector<2> slope;
       for (int k = 0; k < 2; ++k) {
         Vector<2> way;
         way[k] = step * spacing;
-        slope[k] = wet.depth(candidate.point.position + way) - wet.depth(candidate.point.position - way);
+        slope[k] = wet.depth(near + way) - wet.depth(near - way);
       }
       if (const double size = norm(slope); size > 0.0)
         candidate.point.position += (least_depth - depth) * spacing / size * slope;

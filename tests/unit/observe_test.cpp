@@ -123,7 +123,7 @@ Scene<2> scene_with_box(bool outside, const Motion<2>& motion = {}) {
                   .wet_right = outside,
                   .wet_left = !outside,
                   .slip = true,
-                  .motion = motion}};
+                  .motion = motion ? std::make_shared<const Motion<2>>(motion) : nullptr}};
   scene.wall_points = wall_points(scene.walls, dp);
   return scene;
 }

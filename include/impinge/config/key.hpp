@@ -16,10 +16,20 @@
 #include <variant>
 #include <vector>
 
+#include "impinge/core/vector.hpp"
+
 namespace impinge {
 
 /// A vector in a case file, one number per dimension.
 using Numbers = std::array<double, 3>;
+
+/// Its first components.
+template <int Dim>
+Vector<Dim> vector_of(const Numbers& x) {
+  Vector<Dim> result;
+  for (int k = 0; k < Dim; ++k) result[k] = x[static_cast<std::size_t>(k)];
+  return result;
+}
 
 /// The finite numbers that a key may take.
 struct Range {

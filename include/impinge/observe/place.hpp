@@ -8,14 +8,6 @@
 
 namespace impinge {
 
-/// The first Dim numbers of a vector of the case file.
-template <int Dim>
-Vector<Dim> vector_of(const Numbers& x) {
-  Vector<Dim> result;
-  for (int k = 0; k < Dim; ++k) result[k] = x[static_cast<std::size_t>(k)];
-  return result;
-}
-
 /// Offsets between points, by the shortest way where the bounds repeat.
 template <int Dim>
 class Offsets {

@@ -49,14 +49,6 @@ void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings&
 /// True where all that the shape and its place depend on has allowed values.
 bool is_usable(const Keys& keys, const ShapeSettings& shape);
 
-/// The first components.
-template <int Dim>
-Vector<Dim> vector_of(const Numbers& x) {
-  Vector<Dim> result;
-  for (int k = 0; k < Dim; ++k) result[k] = x[static_cast<std::size_t>(k)];
-  return result;
-}
-
 /// The shape with an inside, scaled but not turned or moved; nothing, and what is wrong with its numbers, if there is
 /// no such shape in Dim dimensions.
 template <int Dim>
