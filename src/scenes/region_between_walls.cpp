@@ -46,7 +46,7 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     for (int a = 0; a < parts; ++a) {
       for (int b = 0; b < parts; ++b) {
         const Vector<2> offset{{(a + 0.5) / parts - 0.5, (b + 0.5) / parts - 0.5}};
-        const Vector<2> part = position + spacing * offset;
+        const Vector<2> part = region.place(k, spacing * offset);
         within += region.contains(part) && wet.depth(part) > 0.0 ? 1 : 0;
       }
     }

@@ -57,8 +57,10 @@ class PlacedRegion {
 
   /// Lattice points, those outside the region among them.
   std::int64_t points() const { return lattice_.count(); }
-  /// The place of a lattice point, inside the region or not.
-  Vector<Dim> place(std::int64_t k) const { return placement_(lattice_.point(k)); }
+  /// The place of a lattice point, inside the region or not; `offset`: from the point along the lattice's axes [m].
+  Vector<Dim> place(std::int64_t k, const Vector<Dim>& offset = {}) const {
+    return placement_(lattice_.point(k) + offset);
+  }
   /// Distance to the region's surface, negative inside [m].
   double distance(const Vector<Dim>& point) const { return shape_->distance(placement_.origin_of(point)); }
   /// The place of a lattice point; false outside the region.
