@@ -26,6 +26,7 @@
 #include "impinge/programs/progress.hpp"
 #include "impinge/programs/schedule.hpp"
 #include "impinge/programs/stop_signals.hpp"
+#include "impinge/scenes/scene_report.hpp"
 
 namespace impinge {
 namespace {
@@ -73,6 +74,10 @@ std::vector<FluidVolume> fluid_volumes(const Case& config) {
   return all;
 }
 
+void print_warnings(const Case& config) {
+  for (const std::string& text : scene_warnings(config, config)) fmt::print(stderr, "impinge: warning: {}\n", text);
+}
+
 template <int Dim>
 void check(MPI_Comm comm, const Case& config) {
   check_memory<Dim>(comm, config);
@@ -103,6 +108,8 @@ void check(MPI_Comm comm, const Case& config) {
       bytes_text(bytes), bytes / static_cast<double>(report.particles), bytes_text(most), bytes_text(free));
   for (const auto& [name, volume, error] : fluid_volumes<Dim>(config))
     fmt::print("fluid       {}: {:.6g} m^{}, the particles' {:+.2f} %\n", name, volume, Dim, 100.0 * error);
+  for (const std::string& line : scene_lines(config, config)) fmt::print("{}\n", line);
+  print_warnings(config);
   fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
   if (std::isfinite(cfl_dt))
     fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
@@ -277,6 +284,8 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observe
   if (first)
     fmt::print("done: {} steps in {}, particles in - out - lost - stored = {}\n", report.step - first_step,
                duration_text(seconds_since(start)), report.in - report.out - report.lost - report.fluid);
+  for (const Outlet<Dim>& outlet : simulation.outlets())
+    if (first && outlet.region) fmt::print("outlet {}: {} particles\n", outlet.name, outlet.out);
   return true;
 }
 
@@ -325,6 +334,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
+  if (first) print_warnings(config);
   output.save(simulation, "running");
   return run(comm, config, simulation, observers, output);
 }

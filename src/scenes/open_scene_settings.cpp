@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -53,10 +54,13 @@ struct SoundWall {
 /// The walls that exist, in two dimensions.
 std::vector<SoundWall> sound_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   std::vector<SoundWall> walls;
-  if (!keys.usable(in.dimension) || in.dimension != 2) return walls;
-  for (const WallEntry& entry : s.scene_walls)
-    if (is_usable(keys, entry, s.motions))
-      if (auto wall = wall_of(entry, s.motions)) walls.push_back({&entry, std::move(*wall)});
+  if (!keys.usable(in.dimension, in.spacing) || in.dimension != 2) return walls;
+  constexpr double longest = std::numeric_limits<std::int32_t>::max();  // [dp], as in check_walls
+  for (const WallEntry& entry : s.scene_walls) {
+    if (!is_usable(keys, entry, s.motions)) continue;
+    auto wall = wall_of(entry, s.motions);
+    if (wall && wall->outline.length() <= longest * in.spacing) walls.push_back({&entry, std::move(*wall)});
+  }
   return walls;
 }
 
@@ -96,8 +100,7 @@ std::vector<SoundInlet> sound_inlets(const Keys& keys, const SceneSettings& s, c
   if (!keys.usable(in.dimension, in.spacing, in.kernel.radius, in.kernel.laplacian_radius) || in.dimension != 2)
     return inlets;
   for (const InletEntry& entry : s.inlets)
-    if (is_usable(keys, entry) && entry.width > 0.5 * in.spacing)
-      inlets.push_back({&entry, inlet_of(entry, in.spacing, in.kernel)});
+    if (is_usable(keys, in.spacing, entry)) inlets.push_back({&entry, inlet_of(entry, in.spacing, in.kernel)});
   return inlets;
 }
 

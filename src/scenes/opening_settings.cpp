@@ -10,6 +10,12 @@
 namespace impinge {
 namespace {
 
+constexpr double most_of_row = 1e6;  // particles
+
+bool has_allowed_width(const InletEntry& inlet, double spacing) {
+  return inlet.width >= (1.0 - 1e-9) * spacing && inlet.width <= most_of_row * spacing;
+}
+
 void check_speeds(Keys& keys, const InletEntry& inlet) {
   if (!keys.usable(inlet.speed, inlet.times, inlet.speeds)) return;
   if (inlet.times.empty() && inlet.speeds.empty()) {
@@ -65,11 +71,10 @@ void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, cons
     if (keys.usable(inlet.direction) && !(norm(vector_of<2>(inlet.direction)) > 0.0))
       keys.mistake(inlet.direction, "no direction; allowed: any vector but 0");
     if (keys.usable(inlet.width)) {
-      constexpr double most = 1e6;  // particles of a row
-      if (inlet.width < (1.0 - 1e-9) * spacing || inlet.width > most * spacing)
+      if (!has_allowed_width(inlet, spacing))
         keys.mistake(inlet.width, fmt::format("{} particle wide; allowed: [{}, {:.6g}] (m)",
                                               inlet.width < spacing ? "less than a" : "more than a million",
-                                              number_text(spacing), most * spacing));
+                                              number_text(spacing), most_of_row * spacing));
     }
     if (keys.usable(inlet.start, inlet.stop) && inlet.stop <= inlet.start)
       keys.mistake(inlet.stop, fmt::format("stops before it starts; allowed: > {} (s)", number_text(inlet.start)));
@@ -82,7 +87,7 @@ void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, cons
   };
   for (std::size_t b = 0; b < inlets.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if (!is_usable(keys, inlets[a]) || !is_usable(keys, inlets[b])) continue;
+      if (!is_usable(keys, spacing, inlets[a]) || !is_usable(keys, spacing, inlets[b])) continue;
       const Outline one = block(inlets[a]), other = block(inlets[b]);
       const auto begin = [](const Outline& outline) { return outline.edges().front().begin; };
       if (narrowest_gap(one, other).width > 0.0 && !one.contains(begin(other)) && !other.contains(begin(one))) continue;
@@ -104,9 +109,9 @@ void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& ou
   }
 }
 
-bool is_usable(const Keys& keys, const InletEntry& inlet) {
+bool is_usable(const Keys& keys, double spacing, const InletEntry& inlet) {
   return keys.usable(inlet.center, inlet.direction, inlet.width, inlet.start, inlet.stop) &&
-         norm(vector_of<2>(inlet.direction)) > 0.0;
+         norm(vector_of<2>(inlet.direction)) > 0.0 && has_allowed_width(inlet, spacing);
 }
 
 double largest_speed(const InletEntry& inlet) {
@@ -120,7 +125,7 @@ Inlet<2> inlet_of(const InletEntry& entry, double spacing, const KernelSettings&
   inlet.direction = 1.0 / norm(direction) * direction;
   inlet.across = {Vector<2>{{-inlet.direction[1], inlet.direction[0]}}};
   inlet.corner = vector_of<2>(entry.center) - 0.5 * entry.width * inlet.across[0];
-  const auto count = static_cast<int>(std::clamp(std::round(entry.width / spacing), 1.0, 1e6));
+  const auto count = static_cast<int>(std::clamp(std::round(entry.width / spacing), 1.0, most_of_row));
   const double apart = entry.width / count;
   for (int k = 0; k < count; ++k) inlet.section.push_back({(k + 0.5) * apart});
   inlet.spacing = spacing * spacing / apart;

@@ -117,6 +117,43 @@ TEST_F(Restart, ContinuesWhereThePartitionChanges) {
   expect_the_same_run<2>(jet_case({tight, "parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"}), 60);
 }
 
+// The first inlet stops and the second starts in between; the outlet swallows a part of what falls.
+TEST_F(Restart, ContinuesInletsAndOutletsOfAScene) {
+  const Case config = parse_case({{"case.toml", R"(geometry = "scene"
+particles.spacing = 0.05
+fluid.gravity = [0, -9.81]
+time = {end = 1.0, dt = 5e-3}
+pressure.tolerance = 1e-12
+domain = {low = [-1, -1], high = [3, 1.5]}
+[[inlet]]
+center = [0, 1]
+direction = [2, -1]
+width = 0.33
+times = [0, 0.3]
+speeds = [1, 4]
+stop = 0.2
+[[inlet]]
+center = [2, 1]
+direction = [-1, -0.2]
+width = 0.2
+speed = 2
+start = 0.1
+[[outlet]]
+name = "drain"
+shape = "circle"
+center = [0.3, 0.8]
+radius = 0.2
+)"}});
+  expect_the_same_run<2>(config, 60);
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
+  while (simulation.report().step < 60) simulation.step();
+  const StepReport& report = simulation.report();
+  EXPECT_EQ(report.in - report.out - report.lost - report.fluid, 0);
+  EXPECT_EQ(simulation.outlets().at(0).out, report.out);
+  EXPECT_GT(report.time, 0.2);
+  EXPECT_GT(report.out, 20);
+}
+
 TEST_F(Restart, ContinuesTanks) {
   expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight}), 30);
   expect_the_same_run<2>(shipped_case("hydrostatic.toml", {tight, "fluid.viscosity=1e-3", "time.dt=1e-4"}), 15);

@@ -271,6 +271,48 @@ TEST(SceneInlet, WhatIsWrongWithItIsTold) {
   }
 }
 
+TEST(SceneOpenings, AllMistakesOfASceneAreFoundAtOnceInTheirOrder) {
+  const auto found = scene_mistakes(R"([[wall]]
+name = "a"
+shape = "polygon"
+points = [[0, 0], [1, 1], [1, 0], [0, 1]]
+[[wall]]
+name = "a"
+shape = "polyline"
+points = [[0, -5], [1, -5]]
+wet = "inside"
+motion = "away"
+[[motion]]
+type = "table"
+times = [0, 1, 1]
+angles = [0, 1, 0]
+[[inlet]]
+center = [9, 9]
+direction = [0, 0]
+width = 1
+[[outlet]]
+shape = "circle"
+center = [5, 5]
+radius = 0
+)");
+  const std::vector<std::string> expected{"case.toml:7: wall[1].shape",       "case.toml:10: wall[2].name",
+                                          "case.toml:13: wall[2].wet",        "case.toml:14: wall[2].motion",
+                                          "case.toml:17: motion[1].times",    "case.toml:19: inlet[1].speed",
+                                          "case.toml:21: inlet[1].direction", "case.toml:26: outlet[1].radius"};
+  ASSERT_EQ(found.size(), expected.size()) << testing::PrintToString(found);
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_TRUE(found[k].starts_with(expected[k])) << found[k];
+}
+
+TEST(SceneOpenings, AbsurdNumbersAreMistakes) {
+  const std::string wall = "[[wall]]\nshape = \"circle\"\ncenter = [0, 0]\nwet = \"inside\"\nmotion = \"m\"\n";
+  for (const std::string& text :
+       {"[[motion]]\nname = \"m\"\ntype = \"constant\"\nspin = 1e300\n" + wall + "radius = 1e300\n",
+        "[[motion]]\nname = \"m\"\ntype = \"harmonic\"\namplitude = [1e300, 1e300]\nfrequency = 1e300\n" + wall +
+            "radius = 1\n",
+        std::string("[[inlet]]\ncenter = [1e300, 0]\ndirection = [1e-300, 1e300]\nwidth = 1e300\nspeed = 1e300\n")})
+    EXPECT_FALSE(scene_mistakes(unit_square + text).empty()) << text;
+}
+
 TEST(SceneInlet, WallsMustNotBeInItsWay) {
   const std::string inlet = "[[inlet]]\ncenter = [0, 0.25]\ndirection = [1, 0]\nwidth = 0.5\nspeed = 1\n";
   const auto with = [&](const std::string& wall) { return scene_mistakes(inlet + "[[wall]]\nname = \"w\"\n" + wall); };

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "impinge/scenes/scene_report.hpp"
 #include "scene_case.hpp"
 
 namespace impinge {
@@ -181,6 +182,50 @@ TEST(SceneWalls, ReadBackFromTheResolvedCase) {
   const NamedText stored{"a.checkpoint", config.resolved_text};
   EXPECT_NO_THROW(parse_restart(stored, {"time.end=2"}, "out"));
   EXPECT_THROW(parse_restart(stored, {"wall[2].rotate=20"}, "out"), InputError);
+}
+
+TEST(SceneWalls, AreTold) {
+  const Case config = scene_case(
+      unit_square +
+      "[[wall]]\nname = \"tank\"\nshape = \"box\"\nlow = [0, 0]\nhigh = [2, 1.5]\nwet = \"inside\"\nmotion = \"sway\"\n"
+      "[[wall]]\nname = \"post\"\nshape = \"circle\"\ncenter = [1, 1.2]\nradius = 0.1\nmotion = \"sway\"\n"
+      "[[wall]]\nname = \"plate\"\nshape = \"polyline\"\npoints = [[0.2, 1], [0.4, 1], [0.4, 1.2]]\nmotion = \"sway\"\n"
+      "[[motion]]\nname = \"sway\"\ntype = \"constant\"\n"
+      "[[inlet]]\ncenter = [1.7, 0.5]\ndirection = [-1, 0]\nwidth = 0.2\nspeed = 0.5\nstart = 0.25\n"
+      "[[inlet]]\ncenter = [1.7, 1]\ndirection = [-1, 0]\nwidth = 0.2\ntimes = [0, 1]\nspeeds = [1, 2]\nstop = 2\n"
+      "[[outlet]]\nshape = \"box\"\nlow = [1.5, 0]\nhigh = [2, 0.25]\n");
+  EXPECT_EQ(
+      scene_lines(config, config),
+      (std::vector<std::string>{
+          "wall        tank: 7 m long, 3 m^2 enclosed, 4 faces, wet inside, moves by sway, narrowest gap 4 dp, to post",
+          "wall        post: 0.628319 m long, 0.0314159 m^2 enclosed, 1 face, wet outside, moves by sway, narrowest "
+          "gap 4 dp, to tank",
+          "wall        plate: 0.4 m long, 2 faces, wet both, moves by sway, narrowest gap 4 dp, to tank",
+          "inlet       inlet_1: 0.2 m wide, 4 rows of 4 particles, 0.5 m/s, from t = 0.25 s",
+          "inlet       inlet_2: 0.2 m wide, 4 rows of 4 particles, 2 speeds up to 2 m/s, until t = 2 s",
+          "outlet      outlet_1: 0.125 m^2"}));
+  EXPECT_EQ(scene_warnings(config, config), std::vector<std::string>{});
+}
+
+TEST(SceneWalls, ANarrowGapIsAWarningWithItsPlace) {
+  const auto warnings = [](const std::string& body) {
+    const Case config = scene_case(unit_square +
+                                   "[[wall]]\nname = \"floor\"\nshape = \"polyline\"\npoints = [[-1, 0], [3, "
+                                   "0]]\nwet = \"left\"\n[[wall]]\nname = \"body\"\n" +
+                                   body);
+    return scene_warnings(config, config);
+  };
+  const auto box = [](const std::string& low) {
+    return "shape = \"box\"\nlow = [1.5, " + low + "]\nhigh = [1.6, 0.7]\n";
+  };
+  expect_mistake(
+      warnings(box("0.05")),
+      "the gap between the walls \"floor\" and \"body\" is 1 dp wide at (1.5, 0.025) m; fluid needs 2 dp to pass");
+  EXPECT_EQ(warnings(box("0.11")), std::vector<std::string>{});
+  EXPECT_EQ(warnings(box("0")), std::vector<std::string>{});     // standing on it
+  EXPECT_EQ(warnings(box("-0.1")), std::vector<std::string>{});  // sunk into it
+  // Below the floor, which is dry there.
+  EXPECT_EQ(warnings("shape = \"box\"\nlow = [1.5, -0.7]\nhigh = [1.6, -0.05]\n"), std::vector<std::string>{});
 }
 
 TEST(SceneWalls, WhatIsWrongWithThemIsTold) {

@@ -47,8 +47,8 @@ void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, cons
 /// Notes shapes without an inside and names that are used twice.
 void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& outlets);
 
-/// True where what an inlet's place depends on has allowed values that make one.
-bool is_usable(const Keys& keys, const InletEntry& inlet);
+/// True where what an inlet's place depends on has allowed values that make one. `spacing`: dp [m].
+bool is_usable(const Keys& keys, double spacing, const InletEntry& inlet);
 
 /// The largest speed at any time [m/s].
 double largest_speed(const InletEntry& inlet);
