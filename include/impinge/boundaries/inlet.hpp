@@ -52,12 +52,13 @@ struct Inlet {
     for (std::size_t k = 0; k < place.size(); ++k) position += place[k] * across[k];
     return position;
   }
-  /// True where the hindmost row stands as pass_open_boundaries leaves it, up to rounding.
+  /// True where the hindmost row stands as pass_open_boundaries leaves it, or less than a row farther: a step ends with
+  /// the second part of its way.
   bool is_in_place() const {
     constexpr double rounding = 1e-6;
     if (has_times() && last_row == no_row()) return true;
     const double behind = last_row / spacing + rows;  // the plane that a new row would stand on [rows]
-    return behind >= -rounding && behind <= 1.0 + rounding;
+    return behind >= -rounding && behind <= 2.0;
   }
   double distance_past(const Vector<Dim>& position) const { return dot(position - corner, direction); }
   /// How far a position is outside the block, half a spacing around its particles [m]; 0 inside.
