@@ -6,9 +6,9 @@
 namespace impinge {
 namespace {
 
-constexpr double right_angle = 1e-9;   // largest product of the normals of two faces that meet at a right angle
+constexpr double right_angle = 1e-9;    // largest product of the normals of two faces that meet at a right angle
 constexpr double displacement = 1e-10;  // of a particle's own image, so that its line misses the edge it aims at [dp]
-constexpr double least_share = 0.5;    // of a pair at an arc
+constexpr double least_share = 0.5;     // of a pair at an arc
 constexpr double most_share = 2.0;
 
 template <int Dim>

@@ -130,9 +130,8 @@ TEST(SceneWalls, ALineKeepsAGapAndIsDryBehindOnlyWhereItSaysSo) {
   // Along a column of particles: these go to one side or the other.
   const auto both = with("[[0.525, 0.2], [0.525, 0.8]]", "both");
   EXPECT_EQ(both.size(), 400u);
-  EXPECT_TRUE(std::ranges::none_of(both, [](const auto& x) {
-    return std::abs(x[0] - 0.525) < 0.25 * dp && x[1] > 0.2 && x[1] < 0.8;
-  }));
+  EXPECT_TRUE(std::ranges::none_of(
+      both, [](const auto& x) { return std::abs(x[0] - 0.525) < 0.25 * dp && x[1] > 0.2 && x[1] < 0.8; }));
   // Fluid to the right of the way upwards, x > 0.5; behind it goes what is nearer than 3 dp: three columns.
   const auto right = with("[[0.5, 0], [0.5, 1]]", "right");
   EXPECT_EQ(right.size(), 400u - 3u * 20u);
