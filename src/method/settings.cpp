@@ -9,7 +9,7 @@ namespace {
 template <class Use>
 void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.kernel.radius, 2.6, 2.1);
-  use(s.kernel.laplacian_radius, 2.1, 4.01);
+  use(s.kernel.laplacian_radius, s.dimension == 3 ? 2.1 : 2.6, 4.01);
   use(s.pressure.density_rate, s.dimension == 3 ? 1.0 : 0.1, 0.0);
   use(s.pressure.packing, true, false);
   use(s.pressure.corrected_divergence, true, false);
@@ -50,7 +50,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("kernel.radius", s.kernel.radius, "effective radius of number density, gradient and divergence",
            {.unit = "dp", .range = above_to(1, 6), .fixed = true});
   keys.add("kernel.laplacian_radius", s.kernel.laplacian_radius, "effective radius of the Laplacian",
-           {.unit = "dp", .range = above_to(1, 6), .fixed = true});
+           {.unit = "dp", .range = above_to(1, 6), .fixed = true, .fallback = "in 3D 2.1"});
 
   keys.add("pressure.gamma", s.pressure.gamma,
            "weight of the density term in the source of the pressure equation, unless pressure.density_rate "

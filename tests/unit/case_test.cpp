@@ -127,7 +127,7 @@ TEST(Case, TheSchemeSetsDefaults) {
   const auto check = [](const Case& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
     EXPECT_EQ(c.kernel.radius, consistent ? 2.6 : 2.1);
-    EXPECT_EQ(c.kernel.laplacian_radius, consistent ? 2.1 : 4.01);
+    EXPECT_EQ(c.kernel.laplacian_radius, !consistent ? 4.01 : c.dimension == 3 ? 2.1 : 2.6);
     EXPECT_EQ(c.pressure.density_rate, consistent ? 0.1 : 0.0);
     EXPECT_EQ(c.pressure.packing, consistent);
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
