@@ -114,6 +114,7 @@ def draw_particles(axes, run, chosen, scale=1.0, **colours):
         size, size, np.zeros_like(size), units="xy", offsets=run.position[chosen], offset_transform=axes.transData,
         linewidths=0, **colours,
     )
+    discs.set_visible(size.size > 0)  # Matplotlib draws an empty collection as one large disc
     return axes.add_collection(discs)
 
 
