@@ -122,7 +122,7 @@ void Simulation<Dim>::try_step(double target) {
   redistribute();
   find_neighbours();
   solve_pressure(rule, force, std::max(flow_speed, 3.0 * fall_speed));
-  correct(rule, std::max(flow_speed, fall_speed));
+  correct(rule, std::max(flow_speed, fall_speed), fall_speed);
   report_.time = end;
   place_wall_points(end);
   measure_totals();
@@ -356,10 +356,10 @@ void Simulation<Dim>::solve_pressure(const MotionRule& rule, const BodyForce<Dim
 
 // u = u* - dt/rho grad p, the displacement that goes with it, and the shift.
 template <int Dim>
-void Simulation<Dim>::correct(const MotionRule& rule, double speed) {
+void Simulation<Dim>::correct(const MotionRule& rule, double speed, double fall_speed) {
   const PhaseLog log(Phase::correct);
   Particles<Dim>& particles = state_.particles;
-  const std::vector<Vector<Dim>> change = projection_.velocity_change(rule.dt, state_);
+  const std::vector<Vector<Dim>> change = projection_.velocity_change(rule.dt, fall_speed, state_);
   for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
   const Shift<Dim> shift = shift_of(settings_.shifting, speed, rule.dt, settings_.particles.spacing,
                                     projection_.lattice().number_density, state_);

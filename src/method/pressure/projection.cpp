@@ -189,18 +189,19 @@ void Projection<Dim>::share_pressure(State<Dim>& state) const {
 }
 
 template <int Dim>
-std::vector<Vector<Dim>> Projection<Dim>::velocity_change(double dt, const State<Dim>& state) const {
+std::vector<Vector<Dim>> Projection<Dim>::velocity_change(double dt, double fall_speed, const State<Dim>& state) const {
   const double factor = dt / settings_.fluid.density;
   std::vector<Vector<Dim>> change(state.owned());
   for (std::size_t i = 0; i < change.size(); ++i)
-    if (state.moves(i)) change[i] = -factor * gradient(state, static_cast<int>(i));
+    if (state.moves(i)) change[i] = -factor * gradient(state, fall_speed, static_cast<int>(i));
   return change;
 }
 
 // Differences of pressure alone leave the forces of a pair unequal. On a rough surface and beside it that makes energy,
-// so that pressures push there as well: equally for both at the surface, off the smallest pressure around beside it.
+// and so it does where a body force holds a surface whose particles are in motion against each other. Pressures push
+// there as well: equally for both at the surface, off the smallest pressure around beside it.
 template <int Dim>
-Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, int i) const {
+Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed, int i) const {
   const auto self = static_cast<std::size_t>(i);
   const Particles<Dim>& particles = state.particles;
   const PairList& near = state.near();
@@ -210,7 +211,9 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, int i) const {
                                   i);
   };
   if (!settings_.pressure.corrected_gradient) return pushing();
-  const double flatness = surface_flatness<Dim>(near, state.asymmetry, particles.free_surface, i);
+  double flatness = surface_flatness<Dim>(near, state.asymmetry, particles.free_surface, i);
+  if (fall_speed > 0.0 && flatness > 0.0 && is_at_surface(near, particles.free_surface, i))
+    flatness = std::min(flatness, surface_calm<Dim>(near, particles.velocity, fall_speed, i));
   if (!particles.free_surface[self]) {
     double base = particles.pressure[self];
     if (flatness < 1.0) base -= (1.0 - flatness) * (base - least_pressure(near, particles.pressure, i));
