@@ -111,7 +111,17 @@ void MirrorWalls<Dim>::append_images(Particles<Dim>& particles) {
   copy_velocities(particles.position, particles.velocity);
   position_ = particles.position;
   id_ = particles.id;
-  for (std::size_t i = 0; i < tested_.size(); ++i) tested_[i] = faces_.has_tests(particles.position[i]) ? 1 : 0;
+  // Fluid behind a line does not see what is before it.
+  std::vector<char> hides(static_cast<std::size_t>(faces_.count()), 0);
+  for (int i = 0; faces_.has_lines() && i < first_image_; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (particles.type[self] == ParticleType::wall) continue;
+    for (const int f : faces_.around(position_[self]))
+      if (faces_.is_behind(f, position_[self])) hides[static_cast<std::size_t>(f)] = 1;
+  }
+  const auto is_hiding = [&](int f) { return hides[static_cast<std::size_t>(f)] != 0; };
+  for (std::size_t i = 0; i < tested_.size(); ++i)
+    tested_[i] = faces_.has_tests(position_[i]) || std::ranges::any_of(faces_.around(position_[i]), is_hiding) ? 1 : 0;
 }
 
 template <int Dim>

@@ -114,6 +114,7 @@ void WallFaces<2>::add_wall(const Wall& wall) {
         face.vertex = right ? std::array{end, begin} : std::array{begin, end};
         face.motion = motion;
         face.slip = wall.slip;
+        face.is_open = !wall.outline.closed() && wall.wet_right != wall.wet_left;
         if (edge.straight()) {
           const Vector<2> left = turned_left(edge.end - edge.begin);
           face.normal = (right ? -1.0 : 1.0) / norm(left) * left;
@@ -405,6 +406,11 @@ bool WallFaces<Dim>::fades(int face, int end) const {
 }
 
 template <int Dim>
+bool WallFaces<Dim>::is_behind(int face, const Vector<Dim>& x) const {
+  return at(face).is_open && height(face, x) <= 0.0 && distance(face, x) < reach_;
+}
+
+template <int Dim>
 bool WallFaces<Dim>::has_tests(const Vector<Dim>& x) const {
   if (vertices_.empty() && cell_.empty()) return false;
   constexpr std::size_t most = 2;  // faces that need no tests
@@ -586,7 +592,7 @@ double WallFaces<Dim>::path_factor(const Vector<Dim>& from, const Vector<Dim>& i
   }
 }
 
-// The first face that a way meets from its wet side.
+// The first face that a way meets from its wet side, or a line from either side.
 template <int Dim>
 bool WallFaces<Dim>::first_hit(const Vector<Dim>& from, const Vector<Dim>& to, int skipped, int& face,
                                double& share) const {
@@ -607,8 +613,10 @@ bool WallFaces<Dim>::first_hit(const Vector<Dim>& from, const Vector<Dim>& to, i
         here = (-half - data.bulge * std::sqrt(discriminant)) / square;
         if (!(here >= 0.0 && here <= 1.0) || !covers(data, from + here * way)) continue;
       } else {
-        if (!(height(f, from) >= 0.0 && height(f, to) <= 0.0) || !crosses(f, from, to, 0.0, 2.0)) continue;
-        here = height(f, from) / (height(f, from) - height(f, to));
+        const double first = height(f, from), last = height(f, to);
+        const bool is_met = (first >= 0.0 && last <= 0.0) || (data.is_open && first < 0.0 && last > 0.0);
+        if (!is_met || !crosses(f, from, to, 0.0, 2.0)) continue;
+        here = first / (first - last);
       }
       if (face >= 0 && here >= share) continue;
       face = f;
@@ -653,8 +661,8 @@ void WallFaces<Dim>::confine(const Vector<Dim>& from, Vector<Dim>& to, Vector<Di
   for (int bounce = 0; face >= 0; ++bounce) {
     const Vector<Dim> hit = begin + share * (to - begin);
     const FaceData& data = at(face);
-    const Vector<Dim> normal =
-        data.radius > 0.0 ? data.bulge / norm(hit - data.center) * (hit - data.center) : data.normal;
+    Vector<Dim> normal = data.radius > 0.0 ? data.bulge / norm(hit - data.center) * (hit - data.center) : data.normal;
+    if (data.is_open && dot(to - hit, normal) > 0.0) normal *= -1.0;  // from behind
     const Vector<Dim> wall_velocity = this->velocity(face, hit);
     velocity -= 2.0 * dot(velocity - wall_velocity, normal) * normal;
     if (bounce == most_bounces) {

@@ -30,18 +30,8 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     Point point;
   };
   std::vector<Candidate> candidates;
-  double cells = 0.0;  // between the walls
-  std::int64_t far = 0;
-  for (std::int64_t k = 0; k < region.points(); ++k) {
-    const Vector<2> position = region.place(k);
-    const double wall_depth = wet.depth(position) / spacing;
-    Vector<2> inside;
-    if (wall_depth >= 1.0) {
-      const bool holds = region.point(k, inside);
-      far += holds ? 1 : 0;
-      continue;
-    }
-    if (wall_depth < -1.0) continue;
+  // Of a cell, how much lies in the region and between the walls.
+  const auto share_of = [&](std::int64_t k) {
     int within = 0;
     for (int a = 0; a < parts; ++a) {
       for (int b = 0; b < parts; ++b) {
@@ -50,7 +40,23 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
         within += region.contains(part) && wet.depth(part) > 0.0 ? 1 : 0;
       }
     }
-    cells += static_cast<double>(within) / (parts * parts);
+    return static_cast<double>(within) / (parts * parts);
+  };
+  double cells = 0.0;      // beside walls
+  double far_cells = 0.0;  // elsewhere
+  std::int64_t far = 0;
+  for (std::int64_t k = 0; k < region.points(); ++k) {
+    const Vector<2> position = region.place(k);
+    const double wall_depth = wet.depth(position) / spacing;
+    Vector<2> inside;
+    if (wall_depth >= 1.0) {
+      far += region.point(k, inside) ? 1 : 0;
+      const double beyond = region.distance(position) / spacing;
+      far_cells += beyond < -1.0 ? 1.0 : beyond > 1.0 ? 0.0 : share_of(k);
+      continue;
+    }
+    if (wall_depth < -1.0) continue;
+    cells += share_of(k);
     const double depth = std::min(wall_depth, -region.distance(position) / spacing);
     if (depth > -most_outside + rounding) candidates.push_back({depth, scattered(k), {k, position}});
   }
@@ -79,7 +85,7 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
   }
   std::ranges::sort(near_, {}, &Point::number);
   count_ = far + static_cast<std::int64_t>(near_.size());
-  volume_ = (static_cast<double>(far) + cells) * spacing * spacing;
+  volume_ = candidates.empty() ? region.volume() : (far_cells + cells) * spacing * spacing;
 }
 
 bool RegionBetweenWalls::point(std::int64_t k, Vector<2>& position) const {

@@ -96,7 +96,7 @@ std::vector<Vector<2>> points_in(const Outline& outline, double size, unsigned s
 
 MirrorWalls<2> walls_of(std::vector<Wall> walls) { return {{}, walls, reach, 1.0}; }
 
-/// Of the particles farther than `margin` from the line that bounds the cloud elsewhere.
+/// Between what two particles see of each other.
 double largest_asymmetry(const Cloud& cloud) {
   double largest = 0.0;
   for (int i = 0; i < cloud.particles.owned; ++i)
@@ -208,6 +208,24 @@ TEST(SpecularPairs, OfAPlateAreOnItsOwnSide) {
       EXPECT_GT(cloud.particles.position[static_cast<std::size_t>(i)][1] *
                     cloud.particles.position[static_cast<std::size_t>(j)][1],
                 0.0);
+}
+
+TEST(SpecularPairs, OfALineHideWhatIsBehindIt) {
+  const Outline line = polyline({{{-30.0, 0.0}}, {{30.0, 0.0}}});
+  const Wall wall{.name = "wall", .outline = line, .wet_right = false, .wet_left = true};
+  const auto points = points_where([](const Vector<2>& x) { return std::abs(x[1]) > 0.2; }, 10.0);
+  const Cloud cloud(points, walls_of({wall}));
+  for (int i = 0; i < cloud.particles.owned; ++i) {
+    const double here = cloud.particles.position[static_cast<std::size_t>(i)][1];
+    for (const auto& [j, weight] : cloud.weights(i))
+      EXPECT_GT(here * cloud.particles.position[static_cast<std::size_t>(j)][1], 0.0);
+  }
+  // Nothing passes it from behind either.
+  const MirrorWalls<2> walls = walls_of({wall});
+  Vector<2> to{{0.2, 0.3}}, velocity{{0.2, 0.8}};
+  walls.faces().confine({{0.0, -0.5}}, to, velocity);
+  EXPECT_NEAR(to[1], -0.3, 1e-12);
+  EXPECT_EQ(velocity[1], -0.8);
 }
 
 TEST(SpecularPairs, AtACircleMakeItsSurfaceWhole) {

@@ -90,6 +90,7 @@ class WallFaces {
   bool has_arcs() const {
     return std::ranges::any_of(faces_, [](const FaceData& face) { return face.radius > 0.0; });
   }
+  bool has_lines() const { return std::ranges::any_of(faces_, &FaceData::is_open); }
   bool slips(int face) const { return at(face).slip; }
 
   /// The faces that may be nearer to a position than twice the reach.
@@ -113,6 +114,8 @@ class WallFaces {
   Vector<Dim> acceleration(int face, const Vector<Dim>& x) const;
   bool moves(int face) const { return at(face).motion >= 0; }
 
+  /// True for a position on the dry side of a line that is wet on one side, nearer than the reach.
+  bool is_behind(int face, const Vector<Dim>& x) const;
   /// False where every line to a neighbour and to an image of one is free.
   bool has_tests(const Vector<Dim>& x) const;
   /// What the walls leave of the straight line between two positions: 1 if it is free, 0 if not [-].
@@ -138,6 +141,7 @@ class WallFaces {
     int partner = -1;                   ///< the face on the other side of a plate
     int motion = -1;
     bool slip = false;
+    bool is_open = false;  ///< of a line: there may be fluid on the dry side
   };
   /// The fluid beside an end of a face, from the face to the next one around the vertex.
   struct Sector {
