@@ -1,0 +1,162 @@
+// Water at rest between walls that are not in line with the axes, that move, or that have no thickness.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "impinge/cases/make_simulation.hpp"
+
+namespace impinge {
+namespace {
+
+const MPI_Comm comm = MPI_COMM_WORLD;
+constexpr double dp = 0.01;
+constexpr double rho = 1000.0;
+constexpr double gravity = 9.81;
+
+Case scene(const std::string& text, double end, const std::vector<std::string>& settings = {}) {
+  const std::string head =
+      fmt::format("geometry = \"scene\"\nparticles.spacing = {}\ntime = {{end = {}, dt = 1e-3}}\n", dp, end);
+  return parse_case({{"scene.toml", head + text}}, settings);
+}
+
+/// Force of the fluid on a wall [N/m].
+Vector<2> force_on(const Simulation<2>& simulation, const Scene<2>& walls, int wall) {
+  Vector<2> force;
+  const Particles<2>& particles = simulation.particles();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    if (particles.type[i] != ParticleType::wall) continue;
+    const WallPoint& point = walls.wall_points[static_cast<std::size_t>(particles.id[i])];
+    if (point.wall == wall) force -= particles.pressure[i] * point.area * point.normal;
+  }
+  for (int k = 0; k < 2; ++k) force[k] = sum_over_ranks(comm, force[k]);
+  return force;
+}
+
+TEST(Walls, CarryTheWeightOfTheWaterInAVBottom) {
+  // 0.3 m wide, sides at 45 degrees, and 0.1 m of water above them.
+  const Case config = scene(R"(fluid.gravity = [0, -9.81]
+[[wall]]
+shape = "polygon"
+points = [[0, 0], [0.15, 0.15], [0.15, 0.5], [-0.15, 0.5], [-0.15, 0.15]]
+wet = "inside"
+[[fluid.region]]
+shape = "polygon"
+points = [[0, 0], [0.15, 0.15], [0.15, 0.25], [-0.15, 0.25], [-0.15, 0.15]]
+)",
+                            1.0);
+  const Scene<2> walls = make_scene<2>(config, config);
+  auto simulation = make_simulation<2>(comm, config);
+  const double weight = rho * gravity * static_cast<double>(simulation.report().fluid) * dp * dp;
+  EXPECT_NEAR(weight, rho * gravity * 0.0525, 0.005 * weight);
+  double sum = 0.0, fastest = 0.0;
+  int steps = 0;
+  while (simulation.report().time < config.time.end - 1e-9) {
+    simulation.step();
+    fastest = std::max(fastest, simulation.report().max_speed);
+    if (simulation.report().time < 0.5) continue;
+    sum += force_on(simulation, walls, 0)[1];
+    ++steps;
+  }
+  EXPECT_NEAR(-sum / steps / weight, 1.0, 0.003);
+  EXPECT_LT(fastest, 0.02);  // 0.01 sqrt(g h)
+}
+
+constexpr const char* moving_tank = R"([[wall]]
+shape = "box"
+low = [0, 0]
+high = [0.3, 0.4]
+wet = "inside"
+motion = "way"
+[[fluid.region]]
+shape = "box"
+low = [0, 0]
+high = [0.3, 0.2]
+)";
+
+TEST(Walls, ThatMoveSteadilyTakeTheWaterAlongAtRest) {
+  const Case config = scene(std::string(moving_tank) + R"(velocity = [0.7, -0.4]
+[[motion]]
+name = "way"
+type = "constant"
+velocity = [0.7, -0.4]
+)",
+                            0.05);
+  auto simulation = make_simulation<2>(comm, config);
+  while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+  const Particles<2>& particles = simulation.particles();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    if (particles.type[i] != ParticleType::fluid) continue;
+    EXPECT_LT(norm(particles.velocity[i] - Vector<2>{{0.7, -0.4}}), 1e-11);
+  }
+}
+
+TEST(Walls, ThatRiseOrFallChangeTheWeightOfTheWater) {
+  for (const double up : {3.0, -gravity}) {
+    std::string times, places;
+    for (int k = 0; k <= 30; ++k) {
+      const double t = 0.01 * k;
+      times += fmt::format("{}{}", k > 0 ? ", " : "", t);
+      places += fmt::format("{}[0, {:.12g}]", k > 0 ? ", " : "", 0.5 * up * t * t);
+    }
+    const Case config =
+        scene("fluid.gravity = [0, -9.81]\n" + std::string(moving_tank) +
+                  fmt::format("[[motion]]\nname = \"way\"\ntype = \"table\"\ntimes = [{}]\npositions = [{}]\n", times,
+                              places),
+              0.2, {"time.max_speed=20"});
+    auto simulation = make_simulation<2>(comm, config);
+    while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+    const double lift = 0.5 * up * 0.2 * 0.2;
+    const double largest = rho * gravity * 0.2;
+    const Particles<2>& particles = simulation.particles();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+      if (particles.type[i] != ParticleType::fluid) continue;
+      const double depth = 0.2 - (particles.position[i][1] - lift);
+      EXPECT_NEAR(particles.pressure[i], rho * (gravity + up) * depth, 0.002 * largest);
+    }
+  }
+}
+
+TEST(Walls, WithoutThicknessHoldBackAHigherLevel) {
+  const Case config = scene(R"(fluid.gravity = [0, -9.81]
+[[wall]]
+shape = "box"
+low = [-0.2, 0]
+high = [0.2, 0.5]
+wet = "inside"
+[[wall]]
+shape = "polyline"
+points = [[0, 0], [0, 0.45]]
+[[fluid.region]]
+shape = "box"
+low = [-0.2, 0]
+high = [0, 0.2]
+[[fluid.region]]
+shape = "box"
+low = [0, 0]
+high = [0.2, 0.1]
+)",
+                            0.5);
+  const Scene<2> walls = make_scene<2>(config, config);
+  auto simulation = make_simulation<2>(comm, config);
+  std::map<std::int64_t, bool> left;
+  const auto for_fluid = [&](auto&& use) {
+    const Particles<2>& particles = simulation.particles();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::fluid) use(particles.id[i], particles.position[i][0] < 0.0);
+  };
+  for_fluid([&](std::int64_t id, bool is_left) { left[id] = is_left; });
+  while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+  for_fluid([&](std::int64_t id, bool is_left) {
+    const auto found = left.find(id);
+    if (found == left.end()) return;  // it came from another rank
+    EXPECT_EQ(found->second, is_left);
+  });
+  EXPECT_NEAR(force_on(simulation, walls, 1)[0], rho * gravity * (0.2 * 0.2 - 0.1 * 0.1) / 2.0, 2.0);
+}
+
+}  // namespace
+}  // namespace impinge
