@@ -117,6 +117,41 @@ TEST_F(Restart, ContinuesWhereThePartitionChanges) {
   expect_the_same_run<2>(jet_case({tight, "parallel.imbalance=1.0", "time.dt=8e-3", "jet.inlet_distance=1.5"}), 60);
 }
 
+// A rolling tank with a cylinder and a plate in it.
+TEST_F(Restart, ContinuesBetweenWallsThatMove) {
+  expect_the_same_run<2>(parse_case({{"case.toml", R"(geometry = "scene"
+particles.spacing = 0.02
+fluid.gravity = [0, -9.81]
+time = {end = 1.0, dt = 2e-3}
+pressure.tolerance = 1e-12
+[[wall]]
+shape = "box"
+low = [-0.4, 0]
+high = [0.4, 0.6]
+wet = "inside"
+motion = "roll"
+[[wall]]
+shape = "circle"
+center = [0.15, 0.12]
+radius = 0.07
+motion = "roll"
+[[wall]]
+shape = "polyline"
+points = [[-0.2, 0], [-0.15, 0.2]]
+motion = "roll"
+[[motion]]
+name = "roll"
+type = "harmonic"
+angle = 12
+frequency = 1.2
+[[fluid.region]]
+shape = "box"
+low = [-0.4, 0]
+high = [0.4, 0.3]
+)"}}),
+                         60);
+}
+
 // The first inlet stops and the second starts in between; the outlet swallows a part of what falls.
 TEST_F(Restart, ContinuesInletsAndOutletsOfAScene) {
   const Case config = parse_case({{"case.toml", R"(geometry = "scene"
