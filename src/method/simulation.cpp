@@ -107,9 +107,9 @@ void Simulation<Dim>::try_step(double target) {
   const double end = report_.dt == target - report_.time ? target : report_.time + report_.dt;
   const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
-  const double flow_speed = this->flow_speed();
+  const auto [flow_speed, pull] = measure_flow(force, acceleration);
   // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
-  const double fall_speed = std::sqrt(acceleration * spacing);
+  const double fall_speed = std::sqrt(pull * spacing);
   {
     const PhaseLog log(Phase::predict);
     set_inlets(report_.time + 0.5 * report_.dt, scene_.inlets, state_.particles);
@@ -285,18 +285,22 @@ void Simulation<Dim>::place_wall_points(double time) {
   report_.wall_speed = state_.walls.faces().largest_speed();
 }
 
-// The largest speed of the fluid relative to the walls, where these move as one body: a tank at constant velocity is
-// one at rest. Collective.
+// Where the walls move as one body, in their frame: a tank at constant velocity is one at rest, and what turns with a
+// drum is pulled outwards.
 template <int Dim>
-double Simulation<Dim>::flow_speed() const {
+typename Simulation<Dim>::Flow Simulation<Dim>::measure_flow(const BodyForce<Dim>& force, double acceleration) const {
   const Motion<Dim>* const motion = state_.walls.faces().common_motion();
-  if (!motion) return report_.max_speed;
+  if (!motion) return {report_.max_speed, acceleration};
   const Pose<Dim> pose = (*motion)(report_.time);
-  double largest = 0.0;
-  for (std::size_t i = 0; i < state_.owned(); ++i)
-    if (state_.moves(i))
-      largest = std::max(largest, norm(state_.particles.velocity[i] - pose.velocity_at(state_.particles.position[i])));
-  return max_over_ranks(comm_, largest);
+  std::array<double, 2> largest{};
+  for (std::size_t i = 0; i < state_.owned(); ++i) {
+    if (!state_.moves(i)) continue;
+    const Vector<Dim>& place = state_.particles.position[i];
+    largest[0] = std::max(largest[0], norm(state_.particles.velocity[i] - pose.velocity_at(place)));
+    largest[1] = std::max(largest[1], norm(force.at(place) - pose.acceleration_at(place)));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, comm_);
+  return {largest[0], largest[1]};
 }
 
 template <int Dim>

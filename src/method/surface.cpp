@@ -10,7 +10,7 @@ namespace {
 constexpr double table_step = 0.02;  // [dp]
 constexpr double rough = 0.8;        // mean of the normals' sum at which a surface counts as rough
 constexpr double flat = 0.95;        // likewise as flat
-constexpr double calm = 0.05;        // motion of neighbours against each other that counts as none [fall speeds]
+constexpr double still = 0.05;       // disordered motion that counts as none [fall speeds]
 constexpr double agitated = 0.2;     // likewise from which on the calm is least
 constexpr double least_calm = 0.5;   // still less would only make the surface noisier
 constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
@@ -92,22 +92,23 @@ double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymm
   return std::clamp((norm(sum) / count - rough) / (flat - rough), 0.0, 1.0);
 }
 
-bool is_at_surface(const PairList& near, std::span<const std::uint8_t> free_surface, int i) {
-  if (free_surface[static_cast<std::size_t>(i)]) return true;
+bool is_beside_surface(const PairList& near, std::span<const std::uint8_t> free_surface, int i) {
   for (int k = near.begin(i); k < near.end(i); ++k)
     if (free_surface[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])]) return true;
   return false;
 }
 
 template <int Dim>
-double surface_calm(const PairList& near, std::span<const Vector<Dim>> velocity, double fall_speed, int i) {
+double surface_calm(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                    const Matrix<Dim>& slope, double fall_speed, int i) {
+  const auto self = static_cast<std::size_t>(i);
   double most = 0.0;
   for (int k = near.begin(i); k < near.end(i); ++k) {
-    const Vector<Dim> relative = velocity[static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)])] -
-                                 velocity[static_cast<std::size_t>(i)];
-    most = std::max(most, dot(relative, relative));
+    const auto j = static_cast<std::size_t>(near.index[static_cast<std::size_t>(k)]);
+    const Vector<Dim> rest = velocity[j] - velocity[self] - slope * (position[j] - position[self]);
+    most = std::max(most, dot(rest, rest));
   }
-  const double motion = std::clamp((std::sqrt(most) / fall_speed - calm) / (agitated - calm), 0.0, 1.0);
+  const double motion = std::clamp((std::sqrt(most) / fall_speed - still) / (agitated - still), 0.0, 1.0);
   return 1.0 + (least_calm - 1.0) * motion;
 }
 
@@ -131,8 +132,10 @@ template double surface_depth<2>(const PairRow&, std::span<const Vector<2>>, std
                                  std::span<const std::uint8_t>, double, int);
 template double surface_flatness<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template double surface_flatness<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
-template double surface_calm<2>(const PairList&, std::span<const Vector<2>>, double, int);
-template double surface_calm<3>(const PairList&, std::span<const Vector<3>>, double, int);
+template double surface_calm<2>(const PairList&, std::span<const Vector<2>>, std::span<const Vector<2>>,
+                                const Matrix<2>&, double, int);
+template double surface_calm<3>(const PairList&, std::span<const Vector<3>>, std::span<const Vector<3>>,
+                                const Matrix<3>&, double, int);
 template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template double surface_depth<3>(const PairRow&, std::span<const Vector<3>>, std::span<const Vector<3>>,

@@ -73,7 +73,12 @@ class Simulation {
     return state_.particles.type[i] == ParticleType::wall && !scene_.walls.empty();
   }
   Vector<Dim> wall_point_at(std::int64_t id, double time) const;
-  double flow_speed() const;
+  /// The largest speed of the fluid [m/s] and its largest body force per mass [m/s^2].
+  struct Flow {
+    double speed;
+    double pull;
+  };
+  Flow measure_flow(const BodyForce<Dim>& force, double acceleration) const;
   void redistribute();
   void migrate();
   void count_strays(const Strays& strays);

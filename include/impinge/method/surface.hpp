@@ -45,13 +45,15 @@ template <int Dim>
 double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymmetry,
                         std::span<const std::uint8_t> free_surface, int i);
 
-/// True for a surface particle and for one with a surface particle in its row.
-bool is_at_surface(const PairList& near, std::span<const std::uint8_t> free_surface, int i);
+/// True where a surface particle is in the row of particle i.
+bool is_beside_surface(const PairList& near, std::span<const std::uint8_t> free_surface, int i);
 
-/// Calm of the fluid around particle i [1/2, 1]: 1 where no neighbour moves faster against it than by 0.05 fall speeds,
-/// 1/2 from 0.2 on, linear between. `fall_speed`: sqrt(|g| dp) [m/s].
+/// Calm of the fluid around particle i [1/2, 1]: 1 where no neighbour's velocity is off the linear field around the
+/// particle by more than 0.05 fall speeds, 1/2 from 0.2 on, linear between. `slope`: of the velocity [1/s];
+/// `fall_speed` [m/s].
 template <int Dim>
-double surface_calm(const PairList& near, std::span<const Vector<Dim>> velocity, double fall_speed, int i);
+double surface_calm(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                    const Matrix<Dim>& slope, double fall_speed, int i);
 
 /// Unit normal of the free surface at particle i, out of the fluid, from the asymmetries of the surface particles among
 /// it and its neighbours, weighted; zero without any.

@@ -197,9 +197,9 @@ std::vector<Vector<Dim>> Projection<Dim>::velocity_change(double dt, double fall
   return change;
 }
 
-// Differences of pressure alone leave the forces of a pair unequal. On a rough surface and beside it that makes energy,
-// and so it does where a body force holds a surface whose particles are in motion against each other. Pressures push
-// there as well: equally for both at the surface, off the smallest pressure around beside it.
+// Differences of pressure alone leave the forces of a pair unequal. At a rough surface and beside it that makes energy,
+// and so it does where a force holds a surface whose particles are in disordered motion. Pressures push there as well:
+// equally for both at the surface, off the smallest pressure around beside it.
 template <int Dim>
 Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed, int i) const {
   const auto self = static_cast<std::size_t>(i);
@@ -211,20 +211,33 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed
                                   i);
   };
   if (!settings_.pressure.corrected_gradient) return pushing();
-  double flatness = surface_flatness<Dim>(near, state.asymmetry, particles.free_surface, i);
-  if (fall_speed > 0.0 && flatness > 0.0 && is_at_surface(near, particles.free_surface, i))
-    flatness = std::min(flatness, surface_calm<Dim>(near, particles.velocity, fall_speed, i));
-  if (!particles.free_surface[self]) {
-    double base = particles.pressure[self];
-    if (flatness < 1.0) base -= (1.0 - flatness) * (base - least_pressure(near, particles.pressure, i));
+  const double flatness = surface_flatness<Dim>(near, state.asymmetry, particles.free_surface, i);
+  const auto off = [&](double base) {
     return corrected_gradient<Dim>(near, particles.position, particles.pressure, base, state.correction[self], n0, i);
+  };
+  if (!particles.free_surface[self]) {
+    const double own = particles.pressure[self];
+    if (!is_beside_surface(near, particles.free_surface, i)) return off(own);
+    const double share = std::min(flatness, calm(state, fall_speed, i));
+    return off(share < 1.0 ? own - (1.0 - share) * (own - least_pressure(near, particles.pressure, i)) : own);
   }
   if (flatness == 0.0) return pushing();
   const Vector<Dim> normal = surface_normal<Dim>(near, state.asymmetry, particles.free_surface, i);
   const std::optional<Vector<Dim>> even =
       surface_gradient<Dim>(near, particles.position, particles.pressure, normal, settings_.particles.spacing, n0, i);
   if (!even) return pushing();
-  return flatness < 1.0 ? flatness * *even + (1.0 - flatness) * pushing() : *even;
+  const double share = std::min(flatness, calm(state, fall_speed, i));
+  return share < 1.0 ? share * *even + (1.0 - share) * pushing() : *even;
+}
+
+template <int Dim>
+double Projection<Dim>::calm(const State<Dim>& state, double fall_speed, int i) const {
+  if (fall_speed == 0.0) return 1.0;
+  const Particles<Dim>& particles = state.particles;
+  const Matrix<Dim> slope =
+      velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
+                             state.correction[static_cast<std::size_t>(i)], near_sums_.number_density, i);
+  return surface_calm<Dim>(state.near(), particles.position, particles.velocity, slope, fall_speed, i);
 }
 
 template <int Dim>

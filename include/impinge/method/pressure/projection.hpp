@@ -34,7 +34,8 @@ class Projection {
   PressureReport solve(const Step& step, const BodyForce<Dim>& force, State<Dim>& state, int last_iterations,
                        int& cold_solves);
 
-  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: sqrt(|g| dp) [m/s]. Not collective.
+  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: sqrt(|g| dp), g the apparent body force [m/s].
+  /// Not collective.
   std::vector<Vector<Dim>> velocity_change(double dt, double fall_speed, const State<Dim>& state) const;
 
   /// Makes the next solve a cold one: it starts from zero and with a new coarse matrix. Not collective.
@@ -68,6 +69,7 @@ class Projection {
   PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
   void share_pressure(State<Dim>& state) const;
   Vector<Dim> gradient(const State<Dim>& state, double fall_speed, int i) const;
+  double calm(const State<Dim>& state, double fall_speed, int i) const;
 
   const MethodSettings& settings_;
   LatticeSums near_sums_;    // of the number density's radius
