@@ -308,6 +308,10 @@ template <int Dim>
 PairRow NeighbourSearch<Dim>::far_row(int i) {
   const ParticleType type = type_[static_cast<std::size_t>(i)];
   if (type != ParticleType::fluid && (type != ParticleType::wall || walls_measure_)) return {};
+  if (far_radius_ == near_radius_) {
+    const auto first = static_cast<std::size_t>(near_.begin(i)), count = static_cast<std::size_t>(near_.end(i)) - first;
+    return {{near_.index.data() + first, count}, {near_.weight.data() + first, count}};
+  }
   const std::size_t count = append_row(far_radius_, -1.0, i, searched_position(i));
   weigh(far_radius_, count, weight_.data());
   return {{index_.data(), count}, {weight_.data(), count}};
