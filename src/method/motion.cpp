@@ -8,7 +8,8 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const Dampi
                 double laplacian_factor, State<Dim>& state) {
   Particles<Dim>& particles = state.particles;
   std::vector<Vector<Dim>> change(state.owned());
-  for (std::size_t i = 0; i < change.size(); ++i) change[i] = rule.dt * force.at(particles.position[i]);
+  for (std::size_t i = 0; i < change.size(); ++i)
+    change[i] = rule.dt * force.at(particles.position[i] + rule.after * particles.velocity[i]);
   if (!damping.empty())
     for (std::size_t i = 0; i < change.size(); ++i)
       change[i] += damping.velocity_change(particles.position[i], particles.velocity[i], rule.dt);

@@ -24,8 +24,8 @@ struct MotionRule {
 };
 
 /// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step, and what the damping takes.
-/// `laplacian_factor`: 2 Dim/(n0 lambda) [1/m^2]. Positions are moved back by what advance() moves too far by the rule.
-/// Collective.
+/// The body force is that where the pressure will act. `laplacian_factor`: 2 Dim/(n0 lambda) [1/m^2]. Positions are
+/// moved back by what advance() moves too far by the rule. Collective.
 template <int Dim>
 void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping, double viscosity,
                 double laplacian_factor, State<Dim>& state);
