@@ -39,4 +39,5 @@ ablate a-number-density pressure.packing=false
 ablate b-no-repulsion shifting.least_distance=0
 ablate c-new-velocity time.mean_velocity=false
 ablate d-radii-2.1-4.01 kernel.radius=2.1 kernel.laplacian_radius=4.01
+ablate e-no-smoothing smoothing.rate=0
 /usr/bin/python3 jobs/table.py "$root" | tee "$root/table.txt"

@@ -151,9 +151,9 @@ Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> positio
 }
 
 template <int Dim>
-Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<Dim>> position,
-                                  std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                                  const Vector<Dim>& displacement, double n0, int i) {
+Matrix<Dim> fluid_velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                                    std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                                    double n0, int i) {
   const auto self = static_cast<std::size_t>(i);
   const Vector<Dim> centre = position[self];
   const Vector<Dim> own = velocity[self];
@@ -163,19 +163,40 @@ Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<D
     if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
     const Vector<Dim> offset = position[j] - centre;
     const Vector<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
-    const Vector<Dim> relative = velocity[j] - own;
     moment.add_product(weighted, offset);
-    slope.add_product(relative, weighted);
+    slope.add_product(velocity[j] - own, weighted);
   });
-  const Vector<Dim> change = slope * (inverse_or(moment, Matrix<Dim>{}) * displacement);
+  const Matrix<Dim> inverse = inverse_or(moment, Matrix<Dim>{});
+  for (Vector<Dim>& row : slope.row) row = inverse * row;  // which is symmetric
+  return slope;
+}
+
+template <int Dim>
+Vector<Dim> limited_change(const PairList& near, std::span<const Vector<Dim>> velocity,
+                           std::span<const ParticleType> type, const Vector<Dim>& change, int i) {
   const double size = norm(change);
   if (size == 0.0) return change;
+  const Vector<Dim> own = velocity[static_cast<std::size_t>(i)];
   double most = 0.0;
   for_pairs(near, i, [&](std::size_t j, double) {
     if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
     most = std::max(most, dot(velocity[j] - own, change) / size);
   });
   return most < size ? most / size * change : change;
+}
+
+template <int Dim>
+Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> position,
+                       std::span<const Vector<Dim>> velocity, std::span<const Matrix<Dim>> gradient, double n0, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  Vector<Dim> sum;
+  if (gradient[self] == Matrix<Dim>{}) return sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (j >= gradient.size() || gradient[j] == Matrix<Dim>{}) return;
+    const Vector<Dim> offset = 0.5 * (position[j] - position[self]);
+    sum += weight * (velocity[j] - velocity[self] - gradient[self] * offset - gradient[j] * offset);
+  });
+  return 1.0 / n0 * sum;
 }
 
 template <int Dim>
@@ -290,9 +311,13 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
                                                double, const Matrix<Dim>&, double, int);                               \
   template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \
                                       double, double, int);                                                            \
-  template Vector<Dim> velocity_change_along<Dim>(const PairList&, std::span<const Vector<Dim>>,                       \
-                                                  std::span<const Vector<Dim>>, std::span<const ParticleType>,         \
-                                                  const Vector<Dim>&, double, int);                                    \
+  template Matrix<Dim> fluid_velocity_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,                     \
+                                                    std::span<const Vector<Dim>>, std::span<const ParticleType>,       \
+                                                    double, int);                                                      \
+  template Vector<Dim> limited_change<Dim>(const PairList&, std::span<const Vector<Dim>>,                              \
+                                           std::span<const ParticleType>, const Vector<Dim>&, int);                    \
+  template Vector<Dim> off_linear<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,    \
+                                       std::span<const Matrix<Dim>>, double, int);                                     \
   template Vector<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>,  \
                                               std::span<const ParticleType>, std::span<const Vector<Dim>>, double,     \
                                               int);                                                                    \

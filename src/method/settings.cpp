@@ -19,6 +19,7 @@ void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.shifting.coefficient, 1.0, 0.0);
   use(s.shifting.least_distance, 0.9, 0.0);
   use(s.shifting.correct_velocity, true, false);
+  use(s.smoothing.rate, 0.2, 0.0);
   use(s.collision.distance, 0.5, 0.8);
   use(s.time.mean_velocity, true, false);
 }
@@ -101,6 +102,11 @@ void declare_method(Keys& keys, MethodSettings& s) {
            {.unit = "dp", .range = from_to(0, 1)});
   keys.add("shifting.correct_velocity", s.shifting.correct_velocity,
            "a shifted particle takes the velocity of its new place, by the local gradient");
+
+  keys.add("smoothing.rate", s.smoothing.rate,
+           "rate at which velocities off the linear field of their neighbours decay; u: the largest fluid speed, at "
+           "least 3 sqrt(|g| dp); 0: they do not",
+           {.unit = "u/dp", .range = from_to(0, 2)});
 
   keys.add("collision.distance", s.collision.distance, "approaching particles nearer than this collide; 0: none do",
            {.unit = "dp", .range = from_to(0, 1)});

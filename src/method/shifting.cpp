@@ -10,13 +10,12 @@ constexpr double largest_shift = 0.1;  // of a step [dp]
 
 template <int Dim>
 Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
-                    State<Dim>& state) {
-  Particles<Dim>& particles = state.particles;
+                    std::span<const Matrix<Dim>> gradient, const State<Dim>& state) {
+  const Particles<Dim>& particles = state.particles;
   Shift<Dim> shift{std::vector<Vector<Dim>>(state.owned()), std::vector<Vector<Dim>>(state.owned())};
   const double scale = shifting.coefficient * speed * dt;
   if (scale == 0.0) return shift;
   const double largest = largest_shift * spacing;
-  if (shifting.correct_velocity) state.refresh_velocities();
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (!state.moves(self) || is_spray(particles, n0, self)) continue;
@@ -30,13 +29,15 @@ Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, d
     if (const double length = norm(delta); length > largest) delta *= largest / length;
     shift.displacement[self] = delta;
     if (shifting.correct_velocity)
-      shift.velocity_change[self] = velocity_change_along<Dim>(state.near(), particles.position, particles.velocity,
-                                                               particles.type, delta, n0, i);
+      shift.velocity_change[self] =
+          limited_change<Dim>(state.near(), particles.velocity, particles.type, gradient[self] * delta, i);
   }
   return shift;
 }
 
-template Shift<2> shift_of(const ShiftingSettings&, double, double, double, double, State<2>&);
-template Shift<3> shift_of(const ShiftingSettings&, double, double, double, double, State<3>&);
+template Shift<2> shift_of(const ShiftingSettings&, double, double, double, double, std::span<const Matrix<2>>,
+                           const State<2>&);
+template Shift<3> shift_of(const ShiftingSettings&, double, double, double, double, std::span<const Matrix<3>>,
+                           const State<3>&);
 
 }  // namespace impinge

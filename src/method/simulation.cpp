@@ -10,6 +10,7 @@
 #include "impinge/method/density.hpp"
 #include "impinge/method/motion.hpp"
 #include "impinge/method/shifting.hpp"
+#include "impinge/method/smoothing.hpp"
 #include "impinge/method/time_step.hpp"
 
 namespace impinge {
@@ -70,8 +71,9 @@ void Simulation<Dim>::settle() {
   const ShiftingSettings shifting{.coefficient = 1.0, .least_distance = 0.9, .correct_velocity = true};
   const double spacing = settings_.particles.spacing;
   for (int pass = 0; pass < passes; ++pass) {
-    const Shift<Dim> shift =
-        shift_of(shifting, way * spacing, 1.0, spacing, projection_.lattice().number_density, state_);
+    const double n0 = projection_.lattice().number_density;
+    const std::vector<Matrix<Dim>> gradient = velocity_gradients(n0, state_);
+    const Shift<Dim> shift = shift_of<Dim>(shifting, way * spacing, 1.0, spacing, n0, gradient, state_);
     for (std::size_t i = 0; i < shift.displacement.size(); ++i) {
       state_.particles.position[i] += shift.displacement[i];
       state_.particles.velocity[i] += shift.velocity_change[i];
@@ -122,7 +124,7 @@ void Simulation<Dim>::try_step(double target) {
   redistribute();
   find_neighbours();
   solve_pressure(rule, force, std::max(flow_speed, 3.0 * fall_speed));
-  correct(rule, std::max(flow_speed, fall_speed), fall_speed);
+  correct(rule, flow_speed, fall_speed);
   report_.time = end;
   place_wall_points(end);
   measure_totals();
@@ -358,19 +360,24 @@ void Simulation<Dim>::solve_pressure(const MotionRule& rule, const BodyForce<Dim
   if (!report_.pressure.failure.empty()) fail(Phase::solve, report_.pressure.failure);
 }
 
-// u = u* - dt/rho grad p, the displacement that goes with it, and the shift.
+// u = u* - dt/rho grad p, the displacement that goes with it, the shift and the smoothing.
 template <int Dim>
-void Simulation<Dim>::correct(const MotionRule& rule, double speed, double fall_speed) {
+void Simulation<Dim>::correct(const MotionRule& rule, double flow_speed, double fall_speed) {
   const PhaseLog log(Phase::correct);
+  const double spacing = settings_.particles.spacing, n0 = projection_.lattice().number_density;
   Particles<Dim>& particles = state_.particles;
   const std::vector<Vector<Dim>> change = projection_.velocity_change(rule.dt, fall_speed, state_);
   for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
-  const Shift<Dim> shift = shift_of(settings_.shifting, speed, rule.dt, settings_.particles.spacing,
-                                    projection_.lattice().number_density, state_);
+  std::vector<Matrix<Dim>> gradient;
+  if (needs_velocity_gradients(settings_)) gradient = velocity_gradients(n0, state_);
+  const Shift<Dim> shift =
+      shift_of<Dim>(settings_.shifting, std::max(flow_speed, fall_speed), rule.dt, spacing, n0, gradient, state_);
+  const std::vector<Vector<Dim>> smoothing = smoothing_of<Dim>(
+      settings_.smoothing, std::max(flow_speed, 3.0 * fall_speed), rule.dt, spacing, n0, gradient, state_);
   advance(rule.after, scene_.inlets, particles);
   for (std::size_t i = 0; i < change.size(); ++i) {
     particles.position[i] += (rule.before - rule.after) * change[i] + shift.displacement[i];
-    particles.velocity[i] += shift.velocity_change[i];
+    particles.velocity[i] += shift.velocity_change[i] + smoothing[i];
   }
 }
 

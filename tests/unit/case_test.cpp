@@ -114,6 +114,7 @@ const char* const scheme_keys[] = {"kernel.radius",
                                    "shifting.coefficient",
                                    "shifting.least_distance",
                                    "shifting.correct_velocity",
+                                   "smoothing.rate",
                                    "collision.distance",
                                    "time.mean_velocity"};
 
@@ -136,6 +137,7 @@ TEST(Case, TheSchemeSetsDefaults) {
     EXPECT_EQ(c.shifting.coefficient, consistent ? 1.0 : 0.0);
     EXPECT_EQ(c.shifting.least_distance, consistent ? 0.9 : 0.0);
     EXPECT_EQ(c.shifting.correct_velocity, consistent);
+    EXPECT_EQ(c.smoothing.rate, consistent ? 0.2 : 0.0);
     EXPECT_EQ(c.collision.distance, consistent ? 0.5 : 0.8);
     EXPECT_EQ(c.time.mean_velocity, consistent);
   };
@@ -268,6 +270,8 @@ TEST(Case, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: pressure.density_rate = 5.1: out of range; allowed: [0, 5] (u/dp)"});
   EXPECT_EQ(mistakes_in("shifting.coefficient = -1"),
             Texts{"case.toml:1: shifting.coefficient = -1: out of range; allowed: [0, 10] (dp)"});
+  EXPECT_EQ(mistakes_in("smoothing.rate = 2.1"),
+            Texts{"case.toml:1: smoothing.rate = 2.1: out of range; allowed: [0, 2] (u/dp)"});
   EXPECT_EQ(mistakes_in("shifting.least_distance = 1.1"),
             Texts{"case.toml:1: shifting.least_distance = 1.1: out of range; allowed: [0, 1] (dp)"});
   EXPECT_EQ(mistakes_in("collision.distance = 1.1"),

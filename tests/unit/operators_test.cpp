@@ -180,8 +180,9 @@ TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFieldsAndKnowsNoWalls) {
     const auto expect_exact = [&](int i) {
       const Vector<Dim> centre = p.position[static_cast<std::size_t>(i)];
       const Vector<Dim> expected = linear_velocity(centre + displacement) - linear_velocity(centre);
-      const Vector<Dim> change = velocity_change_along<Dim>(cloud.near, p.position, p.velocity, p.type, displacement,
-                                                            cloud.sums.number_density, i);
+      const Vector<Dim> change =
+          fluid_velocity_gradient<Dim>(cloud.near, p.position, p.velocity, p.type, cloud.sums.number_density, i) *
+          displacement;
       EXPECT_NEAR(norm(change - expected), 0.0, 1e-10);
     };
     expect_exact(cloud.centre());
@@ -195,15 +196,49 @@ TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFieldsAndKnowsNoWalls) {
   }
 }
 
+TYPED_TEST(Operators, OffLinearIsNoiseAlone) {
+  constexpr int Dim = TypeParam::value;
+  Cloud<Dim> cloud(0.2);
+  Particles<Dim>& p = cloud.particles;
+  const auto off_linear_of_all = [&] {
+    std::vector<Matrix<Dim>> gradient;
+    for (int i = 0; i < cloud.near.rows(); ++i)
+      gradient.push_back(
+          fluid_velocity_gradient<Dim>(cloud.near, p.position, p.velocity, p.type, cloud.sums.number_density, i));
+    std::vector<Vector<Dim>> result;
+    for (int i = 0; i < cloud.near.rows(); ++i)
+      result.push_back(off_linear<Dim>(cloud.near, p.position, p.velocity, gradient, cloud.sums.number_density, i));
+    return result;
+  };
+  set_linear_fields(p);
+  for (const Vector<Dim>& none : off_linear_of_all()) EXPECT_NEAR(norm(none), 0.0, 1e-10);
+
+  std::vector<Vector<Dim>> noise(p.velocity.size());
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    for (int k = 0; k < Dim; ++k) noise[i][k] = std::sin(37.0 * static_cast<double>(i) + k);
+  for (std::size_t i = 0; i < noise.size(); ++i) p.velocity[i] += noise[i];
+  const std::vector<Vector<Dim>> change = off_linear_of_all();
+  Vector<Dim> momentum;
+  double energy = 0.0;  // it takes of the noise
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    momentum += change[i];
+    energy += dot(change[i], noise[i]);
+  }
+  EXPECT_NEAR(norm(momentum), 0.0, 1e-9);
+  EXPECT_LT(energy, -0.1 * static_cast<double>(change.size()));
+}
+
 TYPED_TEST(Operators, VelocityChangesNoFurtherThanToTheNeighbours) {
   constexpr int Dim = TypeParam::value;
   Cloud<Dim> lattice(0.0);
   set_linear_fields(lattice.particles);
   Vector<Dim> displacement;
   displacement[Dim - 1] = 5.0;
+  const Particles<Dim>& p = lattice.particles;
+  const Matrix<Dim> gradient = fluid_velocity_gradient<Dim>(lattice.near, p.position, p.velocity, p.type,
+                                                            lattice.sums.number_density, lattice.centre());
   const Vector<Dim> change =
-      velocity_change_along<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
-                                 lattice.particles.type, displacement, lattice.sums.number_density, lattice.centre());
+      limited_change<Dim>(lattice.near, p.velocity, p.type, gradient * displacement, lattice.centre());
   const Vector<Dim> along = 1.0 / norm(change) * change;
   double most = 0.0;
   const auto self = static_cast<std::size_t>(lattice.centre());
@@ -295,13 +330,10 @@ TYPED_TEST(Operators, AreNotCorrectedWhereNeighboursAreTooFewOrInLine) {
   constexpr int Dim = TypeParam::value;
   const double n0 = lattice_sums<Dim>(KernelType::non_singular, near_radius).number_density;
   Group<Dim> group;
-  Vector<Dim> displacement;
-  displacement.component.fill(1.0);
   const auto expect_uncorrected = [&] {
     EXPECT_EQ(moment_correction<Dim>(group.pairs(), group.position, n0, 0).row, Matrix<Dim>::identity().row);
-    EXPECT_EQ(
-        velocity_change_along<Dim>(group.pairs(), group.position, group.velocity, group.type, displacement, n0, 0),
-        Vector<Dim>{});
+    EXPECT_EQ(fluid_velocity_gradient<Dim>(group.pairs(), group.position, group.velocity, group.type, n0, 0),
+              Matrix<Dim>{});
   };
   group.add(0.0, 0.0, 1.0, 0.0);
   expect_uncorrected();

@@ -60,6 +60,7 @@ struct Matrix {
     for (int k = 0; k < Dim; ++k) row[static_cast<std::size_t>(k)] += a[k] * b;
   }
 
+  friend bool operator==(const Matrix&, const Matrix&) = default;
   friend Matrix operator*(double factor, Matrix m) {
     for (Vector<Dim>& r : m.row) r *= factor;
     return m;

@@ -82,13 +82,26 @@ template <int Dim>
 Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> position, std::span<const ParticleType> type,
                       double distance, double spacing, int i);
 
-/// Change of velocity over a displacement, (delta . grad) u [m/s], from the neighbours that are no wall; exact on
-/// linear velocities, zero where the neighbours are too few. Along the change, the new velocity
-/// stays below the neighbours' largest: in spray an extrapolation would feed on itself.
+/// Velocity gradient by least squares over the neighbours that are no wall [1/s], row k that of component k; exact on
+/// linear velocities, zero where the neighbours are too few.
 template <int Dim>
-Vector<Dim> velocity_change_along(const PairList& near, std::span<const Vector<Dim>> position,
-                                  std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                                  const Vector<Dim>& displacement, double n0, int i);
+Matrix<Dim> fluid_velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
+                                    std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
+                                    double n0, int i);
+
+/// A change of velocity [m/s], made smaller where the new velocity along it would pass the largest of the neighbours
+/// that are no wall: in spray an extrapolation would feed on itself.
+template <int Dim>
+Vector<Dim> limited_change(const PairList& near, std::span<const Vector<Dim>> velocity,
+                           std::span<const ParticleType> type, const Vector<Dim>& change, int i);
+
+/// What the velocity differences to the neighbours have beyond those of a linear field,
+/// 1/n0 sum (u_j - u_i - (G_i + G_j) r_ij/2) W [m/s], equal and opposite for the two of a pair. On a smooth field it is
+/// of fourth order in the radius. `gradient`: G [1/s], of particles up to the last that is no image; pairs without it,
+/// or where it is zero, are left out.
+template <int Dim>
+Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> position,
+                       std::span<const Vector<Dim>> velocity, std::span<const Matrix<Dim>> gradient, double n0, int i);
 
 /// Mean of the values of particle i and its neighbours that are not on the free surface, by their weights; particle i
 /// has `own_weight`.

@@ -80,6 +80,10 @@ struct ShiftingSettings {
   bool correct_velocity{};  ///< take the velocity of the new place; by scheme
 };
 
+struct SmoothingSettings {
+  double rate{};  ///< at which velocities off the linear field of their neighbours decay [u/dp]; by scheme
+};
+
 struct TimeSettings {
   double end = 0.0;        ///< [s]
   double dt = 0.0;         ///< largest step [s]
@@ -100,6 +104,7 @@ struct MethodSettings {
   FreeSurfaceSettings free_surface;
   CollisionSettings collision;
   ShiftingSettings shifting;
+  SmoothingSettings smoothing;
   TimeSettings time;
   std::vector<DampingSettings> damping;
   ParallelSettings parallel;

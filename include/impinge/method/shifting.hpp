@@ -15,9 +15,10 @@ struct Shift {
 
 /// Particles drift to where neighbours are missing, delta = C u_ref dt F_i, at most 0.1 dp. They do not drift through
 /// the free surface; beside it, they push each other apart where they are too near. They take the velocity of their new
-/// place. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the full lattice [-]. Collective.
+/// place, within the range of their neighbours'. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the
+/// full lattice [-]; `gradient`: of the velocities [1/s]. Not collective.
 template <int Dim>
 Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
-                    State<Dim>& state);
+                    std::span<const Matrix<Dim>> gradient, const State<Dim>& state);
 
 }  // namespace impinge
