@@ -55,8 +55,9 @@ class PairFilter {
 };
 
 /// Finds all pairs within two radii: the near ones as a list, the far ones row by row as they are asked for, since
-/// there may be too many to keep; at equal radii both are the list. A row's order is that of the cells and, within a cell, of the ids, so sums over a row
-/// are bitwise the same for every decomposition; columns of owned particles ascend.
+/// there may be too many to keep; at equal radii both are the list. A row's order is that of the cells and, within a
+/// cell, of the ids, so sums over a row are bitwise the same for every decomposition; columns of owned particles
+/// ascend.
 template <int Dim>
 class NeighbourSearch {
  public:
@@ -85,9 +86,9 @@ class NeighbourSearch {
 
   const PairList& near() const { return near_; }
 
-  /// Calls use(i, row) for every owned particle in their order, with its pairs within the far radius at the last search;
-  /// the particle itself may stand in its place, with weight 0. Rows of inlet particles, ghosts, and walls that measure are
-  /// empty. A row is valid during the call. Not collective.
+  /// Calls use(i, row) for every owned particle in their order, with its pairs within the far radius at the last
+  /// search; the particle itself may stand in its place, with weight 0. Rows of inlet particles, ghosts, and walls that
+  /// measure are empty. A row is valid during the call. Not collective.
   template <class Use>
   void for_far_rows(Use&& use) {
     for (int i = 0; i < near_.rows(); ++i) use(i, far_row(i));
