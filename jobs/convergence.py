@@ -97,7 +97,7 @@ def draw_force(root, runs, path):
     figure, axes = plt.subplots(layout="constrained", figsize=(9, 3.5), dpi=110)
     for scheme, colour in (("paper", "tab:orange"), ("consistent", "tab:blue")):
         folder = root / f"{scheme}-impact-60-{max(common)}"
-        force = json.loads((folder / "validation/validation.json").read_text())["analytic"]["normal_force"]
+        force = json.loads((folder / "validation/validation.json").read_text())["analytic"]["force"]
         with open(next(folder.glob("*_history.csv")), newline="") as file:
             lines = [(float(line["t"]), float(line["plate_force"]) / force) for line in csv.DictReader(file)]
         lines = [line for line in lines if line[0] > lines[-1][0] - 0.5]

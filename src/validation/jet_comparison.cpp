@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
+#include <tuple>
 
 namespace impinge {
 namespace {
@@ -13,20 +13,97 @@ using Side = AnalyticJet::Side;
 
 std::optional<double> if_finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
 
-bool is_finite(const Vector<2>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]); }
+bool is_finite(const Particles<2>& particles, std::size_t i) {
+  const auto finite = [](const Vector<2>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]); };
+  return finite(particles.position[i]) && finite(particles.velocity[i]) && std::isfinite(particles.pressure[i]);
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Standard deviation; not a number of a single value.
+double scatter_of(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) squares += std::pow(value - mean, 2);
+  return std::sqrt(squares / (static_cast<double>(values.size()) - 1.0));
+}
+
+std::optional<AnalyticWedge> wedge_of(const JetTarget& target) {
+  if (target.type != TargetType::wedge) return std::nullopt;
+  return AnalyticWedge(target.width, target.speed, target.density, target.angle, std::min(target.end, -target.begin));
+}
 
 }  // namespace
 
-AnalyticJet analytic_jet(const Case& config) {
-  return {config.jet.width, config.jet.speed, config.fluid.density, config.jet.angle * std::numbers::pi / 180.0};
+AnalyticJet analytic_jet(const JetTarget& target) { return {target.width, target.speed, target.density, target.angle}; }
+
+WallComparison::WallComparison(const JetTarget& target, double force, std::function<double(double)> pressure)
+    : target_(target), force_(force), pressure_(std::move(pressure)) {}
+
+void WallComparison::set_average(const Particles<2>& particles, double duration) {
+  average_.clear();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (const auto point = target_.point_of(particles, i))
+      average_.emplace_back(*point, particles.pressure_impulse[i] / duration);
+  std::ranges::sort(average_, {}, [](const auto& entry) { return entry.first.x; });
 }
 
-JetComparison::JetComparison(const Case& config) : jet_(analytic_jet(config)), spacing_(config.particles.spacing) {
+void WallComparison::add_snapshot(const Particles<2>& particles) {
+  double stagnation = 0.0, near = 0.0, force = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    const auto point = target_.point_of(particles, i);
+    if (!point) continue;
+    force += particles.pressure[i] * point->length * point->share;
+    if (std::abs(point->x) >= target_.spacing) continue;
+    stagnation += particles.pressure[i];
+    near += 1.0;
+  }
+  stagnation_.push_back(stagnation / near);
+  force_ratio_.push_back(force / force_);
+}
+
+std::vector<PlatePoint> WallComparison::profile() const {
+  std::vector<PlatePoint> profile;
+  for (const auto& [point, pressure] : average_) profile.push_back({point.x, pressure, pressure_(point.x)});
+  return profile;
+}
+
+void WallComparison::measure(JetMetrics& metrics) const {
+  if (!average_.empty()) {
+    double error = 0.0, reference = 0.0, force = 0.0;
+    auto [peak, largest] = average_.front();
+    for (const auto& [point, pressure] : average_) {
+      force += pressure * point.length * point.share;
+      if (pressure > largest) std::tie(peak, largest) = std::pair{point, pressure};
+      const double analytic = pressure_(point.x);
+      if (analytic <= 1e-3 * 0.5 * target_.density * target_.speed * target_.speed) continue;
+      error += std::pow(pressure - analytic, 2) * point.length;
+      reference += analytic * analytic * point.length;
+    }
+    metrics.wall_l2 = if_finite(std::sqrt(error / reference));
+    metrics.force_ratio = if_finite(force / force_);
+    if (std::isfinite(force)) {
+      metrics.peak_pressure = largest;
+      metrics.peak_x = peak.x;
+    }
+  }
+  metrics.force_scatter = if_finite(scatter_of(force_ratio_));
+  metrics.stagnation_mean = if_finite(mean_of(stagnation_));
+  metrics.stagnation_scatter = if_finite(scatter_of(stagnation_));
+}
+
+JetComparison::JetComparison(const JetTarget& target)
+    : jet_(analytic_jet(target)),
+      spacing_(target.spacing),
+      area_(spacing_ * spacing_ * (target.type == TargetType::jet ? 0.5 : 1.0)),
+      wall_(target, jet_.normal_force(), [jet = jet_](double x) { return jet.wall_pressure(x); }) {
   const double width = jet_.width();
   const double thin = jet_.plate_position_of_cp(0.01, Side::h2);
-  plate_ = columns(config.plate.begin, config.plate.end);
-  h1_ = columns(1.5 * width, std::min(3.0 * width, config.plate.end));
-  h2_ = columns(std::max(thin - width, config.plate.begin), thin - 0.5 * width);
+  plate_ = columns(target.begin, target.end);
+  h1_ = columns(1.5 * width, std::min(3.0 * width, target.end));
+  h2_ = columns(std::max(thin - width, target.begin), thin - 0.5 * width);
 }
 
 JetComparison::Columns JetComparison::columns(double begin, double end) const {
@@ -61,7 +138,7 @@ std::optional<double> JetComparison::film_ratio(Side side) const {
   double particles = 0.0;
   for (const auto& column : sheet.columns) particles += static_cast<double>(column.count);
   const double length = sheet.width * static_cast<double>(sheet.columns.size());
-  return particles * spacing_ * spacing_ / (length * snapshots_ * jet_.sheet_thickness(side));
+  return particles * area_ / (length * snapshots_ * jet_.sheet_thickness(side));
 }
 
 std::optional<double> JetComparison::analytic_film(Side side) const {
@@ -78,35 +155,16 @@ std::vector<FilmColumn> JetComparison::film_profile() const {
     const auto& column = plate_.columns[k];
     if (!column.analytic) continue;
     profile.push_back({plate_.begin + (static_cast<double>(k) + 0.5) * plate_.width,
-                       static_cast<double>(column.count) * spacing_ * spacing_ / (plate_.width * snapshots_),
-                       *column.analytic});
+                       static_cast<double>(column.count) * area_ / (plate_.width * snapshots_), *column.analytic});
   }
   return profile;
 }
 
-void JetComparison::set_wall_average(const Particles<2>& particles, double duration) {
-  wall_.clear();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    if (particles.type[i] != ParticleType::wall) continue;
-    const double x = particles.position[i][0];
-    wall_.push_back({x, particles.pressure_impulse[i] / duration, jet_.wall_pressure(x)});
-  }
-  std::ranges::sort(wall_, {}, &PlatePoint::x);
-}
-
 void JetComparison::add_snapshot(const Particles<2>& particles) {
   ++snapshots_;
-  double stagnation = 0.0, walls = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    if (particles.type[i] == ParticleType::wall && std::abs(particles.position[i][0]) < spacing_) {
-      stagnation += particles.pressure[i];
-      walls += 1.0;
-    } else if (particles.type[i] == ParticleType::fluid) {
-      finite_ = finite_ && is_finite(particles.position[i]) && is_finite(particles.velocity[i]) &&
-                std::isfinite(particles.pressure[i]);
-    }
-  }
-  stagnation_.push_back(stagnation / walls);
+  wall_.add_snapshot(particles);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (particles.type[i] == ParticleType::fluid) finite_ = finite_ && is_finite(particles, i);
   if (finite_) add_field(particles);
 }
 
@@ -143,32 +201,10 @@ void JetComparison::add_field(const Particles<2>& particles) {
 
 JetMetrics JetComparison::metrics() const {
   JetMetrics metrics;
-  if (!wall_.empty()) {
-    double error = 0.0, reference = 0.0, sum = 0.0;
-    PlatePoint peak = wall_.front();
-    for (const PlatePoint& point : wall_) {
-      sum += point.pressure;
-      if (point.pressure > peak.pressure) peak = point;
-      if (point.analytic <= 1e-3 * jet_.stagnation_pressure()) continue;
-      error += std::pow(point.pressure - point.analytic, 2);
-      reference += point.analytic * point.analytic;
-    }
-    metrics.wall_l2 = if_finite(std::sqrt(error / reference));
-    metrics.force_ratio = if_finite(spacing_ * sum / jet_.normal_force());
-    if (std::isfinite(sum)) {
-      metrics.peak_pressure = peak.pressure;
-      metrics.peak_x = peak.x;
-    }
-  }
-
-  const auto number = static_cast<double>(snapshots_);
-  const double mean = std::accumulate(stagnation_.begin(), stagnation_.end(), 0.0) / number;
-  double squares = 0.0;
-  for (const double pressure : stagnation_) squares += std::pow(pressure - mean, 2);
-  metrics.stagnation_mean = if_finite(mean);
-  metrics.stagnation_scatter = if_finite(std::sqrt(squares / (number - 1.0)));
+  wall_.measure(metrics);
   if (snapshots_ == 0 || !finite_) return metrics;
 
+  const auto number = static_cast<double>(snapshots_);
   double error = 0.0, reference = 0.0;
   for (const auto& [place, bin] : bins_) {
     error += std::pow(bin.pressure - bin.analytic, 2) / bin.count;
@@ -180,6 +216,49 @@ JetMetrics JetComparison::metrics() const {
   metrics.surface_rms_dp = if_finite(std::sqrt(surface_error_ / surface_) / spacing_);
   metrics.film_h1 = film_ratio(Side::h1);
   metrics.film_h2 = film_ratio(Side::h2);
+  return metrics;
+}
+
+SplitJetComparison::SplitJetComparison(const JetTarget& target) : SplitJetComparison(target, wedge_of(target)) {}
+
+SplitJetComparison::SplitJetComparison(const JetTarget& target, const std::optional<AnalyticWedge>& wedge)
+    : target_(target),
+      force_(wedge ? wedge->force()
+                   : target.density * target.speed * target.speed * target.width * (1.0 - std::cos(target.angle))),
+      wall_(target, force_,
+            [wedge](double x) {
+              return wedge ? wedge->pressure(std::abs(x)) : std::numeric_limits<double>::quiet_NaN();
+            }),
+      sheets_(target.sheets.size()) {}
+
+void SplitJetComparison::add_snapshot(const Particles<2>& particles) {
+  ++snapshots_;
+  wall_.add_snapshot(particles);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    if (particles.type[i] != ParticleType::fluid) continue;
+    finite_ = finite_ && is_finite(particles, i);
+    for (std::size_t k = 0; k < sheets_.size(); ++k) {
+      const JetTarget::Sheet& sheet = target_.sheets[k];
+      const Vector<2> place = sheet.frame.of_position(particles.position[i]);
+      if (!(place[0] >= 0.0 && place[0] < sheet.length && place[1] >= 0.0 && place[1] < target_.width)) continue;
+      sheets_[k].count += 1.0;
+      sheets_[k].speed += dot(particles.velocity[i], sheet.frame.x);
+    }
+  }
+}
+
+JetMetrics SplitJetComparison::metrics() const {
+  JetMetrics metrics;
+  wall_.measure(metrics);
+  if (snapshots_ == 0 || !finite_ || sheets_.size() != 2) return metrics;
+  const auto thickness = [&](std::size_t k) {
+    const double area = sheets_[k].count * target_.spacing * target_.spacing / snapshots_;
+    return if_finite(area / (target_.sheets[k].length * 0.5 * target_.width));
+  };
+  metrics.film_h1 = thickness(0);
+  metrics.film_h2 = thickness(1);
+  metrics.sheet_speed =
+      if_finite((sheets_[0].speed + sheets_[1].speed) / (sheets_[0].count + sheets_[1].count) / target_.speed);
   return metrics;
 }
 

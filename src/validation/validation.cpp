@@ -8,8 +8,10 @@
 #include <complex>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 
 #include "impinge/core/errors.hpp"
@@ -30,7 +32,8 @@ struct MetricKey {
 
 constexpr MetricKey metric_keys[] = {
     {"wall_l2", &JetMetrics::wall_l2, "relative L2 error of the averaged wall pressure"},
-    {"force_ratio", &JetMetrics::force_ratio, "force on the plate over rho U^2 H sin a"},
+    {"force_ratio", &JetMetrics::force_ratio, "averaged force over the exact one"},
+    {"force_scatter", &JetMetrics::force_scatter, "its standard deviation over the snapshots"},
     {"peak_pressure", &JetMetrics::peak_pressure, "largest averaged wall pressure [Pa]"},
     {"peak_x", &JetMetrics::peak_x, "its distance from the stagnation point [m]"},
     {"stagnation_mean", &JetMetrics::stagnation_mean, "wall pressure at the stagnation point, mean [Pa]"},
@@ -41,6 +44,9 @@ constexpr MetricKey metric_keys[] = {
     {"surface_rms_dp", &JetMetrics::surface_rms_dp, "RMS distance from the analytic free surface [dp]"},
     {"film_h1", &JetMetrics::film_h1, "thickness of the thick sheet over h1"},
     {"film_h2", &JetMetrics::film_h2, "thickness of the thin sheet over h2"},
+    {"sheet_speed", &JetMetrics::sheet_speed, "mean speed in the sheets of a wedge or cup over U"},
+    {"plane_x", &JetMetrics::plane_x, "stagnation point between two jets, from their middle [m]"},
+    {"plane_drift", &JetMetrics::plane_drift, "speed at which it moves [m/s]"},
 };
 
 std::vector<std::string> split(const std::string& line) {
@@ -84,9 +90,8 @@ std::int64_t count_fluid(const Particles<2>& particles) {
 }
 
 /// What acts on the case, but not on the analytic jet, and how strong it is beside inertia.
-std::vector<std::string> differences_of(const Case& config) {
-  const FluidSettings& fluid = config.fluid;
-  const double width = config.jet.width, speed = config.jet.speed;
+std::vector<std::string> differences_of(const FluidSettings& fluid, const JetTarget& target) {
+  const double width = target.width, speed = target.speed;
   const auto strength = [](const Numbers& g) { return std::hypot(g[0], g[1], g[2]); };
   double gravity = strength(fluid.gravity);
   if (!fluid.gravity_at.empty()) gravity = 0.0;
@@ -99,6 +104,8 @@ std::vector<std::string> differences_of(const Case& config) {
     differences.push_back(fmt::format("a central force, B H/U = {:.3g}", fluid.central_force * width / speed));
   return differences;
 }
+
+std::string_view word_of(TargetType type) { return words(type)[static_cast<std::size_t>(type)]; }
 
 nlohmann::json to_json(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nullptr; }
 
@@ -124,20 +131,21 @@ class TextFile {
 };
 
 /// Free surfaces h1 and h2, from the sheet's end to the jet's.
-void write_surface(const AnalyticJet& jet, const Case& config, const fs::path& path) {
+void write_surface(const JetTarget& target, const fs::path& path) {
+  const AnalyticJet jet = analytic_jet(target);
   TextFile file(path);
   file.print("sheet,x_m,y_m\n");
   for (const Side side : {Side::h1, Side::h2}) {
-    const double sheet_length = std::abs(side == Side::h1 ? config.plate.end : config.plate.begin);
-    for (const Vector<2>& point :
-         jet.surface(side, sheet_length, config.jet.inlet_distance * jet.width(), config.particles.spacing))
+    const double sheet_length = std::abs(side == Side::h1 ? target.end : target.begin);
+    for (const Vector<2>& point : jet.surface(side, sheet_length, target.distance, target.spacing))
       file.print("{},{:.9g},{:.9g}\n", side == Side::h1 ? 1 : 2, point[0], point[1]);
   }
   file.finish();
 }
 
 /// Lines of equal pressure, from plate to plate: |zeta|^2 = 1 - Cp.
-void write_isobars(const AnalyticJet& jet, const Case& config, const fs::path& path) {
+void write_isobars(const JetTarget& target, const fs::path& path) {
+  const AnalyticJet jet = analytic_jet(target);
   constexpr int levels = 40, segments = 2000;
   TextFile file(path);
   file.print("cp,x_m,y_m\n");
@@ -146,12 +154,98 @@ void write_isobars(const AnalyticJet& jet, const Case& config, const fs::path& p
     Vector<2> drawn;
     for (int k = 0; k <= segments; ++k) {
       const Vector<2> point = jet.position(std::polar(std::sqrt(1.0 - cp), std::numbers::pi * k / segments));
-      if (k > 0 && k < segments && norm(point - drawn) < 0.5 * config.particles.spacing) continue;
+      if (k > 0 && k < segments && norm(point - drawn) < 0.5 * target.spacing) continue;
       drawn = point;
       file.print("{},{:.9g},{:.9g}\n", cp, point[0], point[1]);
     }
   }
   file.finish();
+}
+
+Particles<2> particles_of(const std::string& path) {
+  Particles<2> particles;
+  read_snapshot(MPI_COMM_SELF, path, particles);
+  return particles;
+}
+
+void take(const JetComparison& comparison, Validation& result) {
+  result.metrics = comparison.metrics();
+  result.force = analytic_jet(result.target).normal_force();
+  result.wall = comparison.wall_profile();
+  result.film = comparison.film_profile();
+  result.analytic_film_h1 = comparison.analytic_film(Side::h1);
+  result.analytic_film_h2 = comparison.analytic_film(Side::h2);
+}
+
+/// `average_path`: the snapshot with the time-averaged wall pressure; empty: there is none.
+void compare_plate(const std::vector<std::string>& paths, const std::string& average_path, Validation& result) {
+  JetComparison comparison(result.target);
+  if (!average_path.empty()) {
+    const Particles<2> particles = in_frame(result.target, particles_of(average_path));
+    comparison.set_wall_average(particles, result.window->end - result.window->begin);
+  }
+  for (const std::string& path : paths) comparison.add_snapshot(in_frame(result.target, particles_of(path)));
+  take(comparison, result);
+}
+
+/// Likewise.
+void compare_split(const std::vector<std::string>& paths, const std::string& average_path, Validation& result) {
+  SplitJetComparison comparison(result.target);
+  if (!average_path.empty())
+    comparison.set_wall_average(particles_of(average_path), result.window->end - result.window->begin);
+  for (const std::string& path : paths) comparison.add_snapshot(particles_of(path));
+  result.metrics = comparison.metrics();
+  result.wall = comparison.wall_profile();
+  result.force = comparison.force();
+}
+
+/// The slope of a straight line through values at times, by least squares; nothing of a single time.
+std::optional<double> slope_of(const std::vector<double>& times, const std::vector<double>& values) {
+  const auto mean = [](const std::vector<double>& x) {
+    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  };
+  double products = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    products += (times[k] - mean(times)) * (values[k] - mean(values));
+    squares += std::pow(times[k] - mean(times), 2);
+  }
+  return squares > 0.0 ? std::optional(products / squares) : std::nullopt;
+}
+
+/// First finds the stagnation point, through whose mean place the plane goes, then compares the flow on both sides.
+void compare_jets(const std::vector<std::string>& paths, Validation& result) {
+  JetTarget& target = result.target;
+  const Vector<2> middle = target.frame.origin, along = -1.0 * target.frame.y;
+  Vector<2> sum;
+  std::vector<double> places;
+  for (const std::string& path : paths) {
+    const auto point = stagnation_point(particles_of(path), middle, target.width);
+    if (!point) continue;
+    sum += *point - middle;
+    places.push_back(dot(*point - middle, along));
+  }
+  const bool is_found = places.size() == paths.size();
+  const Vector<2> shift = is_found ? 1.0 / static_cast<double>(paths.size()) * sum : Vector<2>{};
+  target.frame.origin += shift;
+  target.begin -= dot(shift, target.frame.x);
+  target.end -= dot(shift, target.frame.x);
+
+  JetComparison comparison(target);
+  Particles<2> particles;
+  std::map<std::int64_t, double> sums;  // of the pressures on the plane, by id
+  for (const std::string& path : paths) {
+    particles = in_frame(target, particles_of(path));
+    comparison.add_snapshot(particles);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::wall) sums[particles.id[i]] += particles.pressure[i];
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (particles.type[i] == ParticleType::wall) particles.pressure_impulse[i] = sums[particles.id[i]];
+  comparison.set_wall_average(particles, static_cast<double>(paths.size()));
+  take(comparison, result);
+  if (!is_found) return;
+  result.metrics.plane_x = dot(shift, along);
+  result.metrics.plane_drift = slope_of(result.times, places);
 }
 
 }  // namespace
@@ -173,29 +267,20 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
                                     result.last_path)});
   result.config = parse_case({{result.last_path, result.last.case_text}});
   const Case& config = result.config;
-  if (config.geometry != SceneType::jet)
-    throw InputError({fmt::format("{}: the case {} is not a jet; only a jet has an analytic solution here", directory,
-                                  config.name)});
-  result.differences = differences_of(config);
+  result.target = jet_target(config);
+  result.differences = differences_of(config.fluid, result.target);
 
-  JetComparison comparison(config);
-  Particles<2> particles;
   const auto averaged = std::find_if(headers.rbegin(), headers.rend(),
                                      [](const SnapshotHeader& h) { return h.window_end > h.window_begin; });
-  if (averaged != headers.rend()) {
-    result.window = {averaged->window_begin, averaged->window_end};
-    read_snapshot(MPI_COMM_SELF, paths[static_cast<std::size_t>(headers.rend() - averaged) - 1], particles);
-    comparison.set_wall_average(particles, averaged->window_end - averaged->window_begin);
-  }
-
+  if (averaged != headers.rend()) result.window = {averaged->window_begin, averaged->window_end};
   TimeSpan span = result.window.value_or(TimeSpan{result.last.time, result.last.time});
   if (selection.from || selection.to)
     span = {selection.from.value_or(headers.front().time), selection.to.value_or(result.last.time)};
   const double tolerance = 1e-9 * config.time.end;
+  std::vector<std::string> chosen;
   for (std::size_t k = 0; k < paths.size(); ++k) {
     if (!(headers[k].time >= span.begin - tolerance && headers[k].time <= span.end + tolerance)) continue;
-    read_snapshot(MPI_COMM_SELF, paths[k], particles);
-    comparison.add_snapshot(particles);
+    chosen.push_back(paths[k]);
     result.times.push_back(headers[k].time);
   }
   if (result.times.empty())
@@ -203,12 +288,21 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
         {fmt::format("{}: no snapshot between {:.6g} s and {:.6g} s; the run's are from {:.6g} s to {:.6g} s",
                      directory, span.begin, span.end, headers.front().time, result.last.time)});
 
-  result.metrics = comparison.metrics();
-  result.wall = comparison.wall_profile();
-  result.film = comparison.film_profile();
-  result.analytic_film_h1 = comparison.analytic_film(Side::h1);
-  result.analytic_film_h2 = comparison.analytic_film(Side::h2);
+  std::string average_path;
+  if (result.window) average_path = paths[static_cast<std::size_t>(headers.rend() - averaged) - 1];
+  switch (result.target.type) {
+    case TargetType::plate:
+      compare_plate(chosen, average_path, result);
+      break;
+    case TargetType::jet:
+      compare_jets(chosen, result);
+      break;
+    case TargetType::wedge:
+    case TargetType::cup:
+      compare_split(chosen, average_path, result);
+  }
 
+  Particles<2> particles;
   if (const auto stock = last_stock(history_path(directory, config.name))) {
     std::int64_t stored = stock->fluid;
     if (stock->step == result.last.step) {
@@ -223,7 +317,7 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
 std::string to_json(const Validation& validation) {
   using nlohmann::json;
   const Case& config = validation.config;
-  const AnalyticJet jet = analytic_jet(config);
+  const JetTarget& target = validation.target;
   nlohmann::ordered_json report;
   report["case"] = config.name;
   report["code_version"] = validation.last.code_version;
@@ -232,21 +326,28 @@ std::string to_json(const Validation& validation) {
   report["step"] = validation.last.step;
   report["time"] = validation.last.time;
   report["last_snapshot"] = fs::path(validation.last_path).filename().string();
-  report["parameters"] = {{"angle", config.jet.angle},
-                          {"width", config.jet.width},
-                          {"speed", config.jet.speed},
-                          {"density", config.fluid.density},
-                          {"spacing", config.particles.spacing},
-                          {"width_over_spacing", config.jet.width / config.particles.spacing},
+  report["target"] = word_of(target.type);
+  report["parameters"] = {{"angle", target.angle * 180.0 / std::numbers::pi},
+                          {"width", target.width},
+                          {"speed", target.speed},
+                          {"density", target.density},
+                          {"spacing", target.spacing},
+                          {"width_over_spacing", target.width / target.spacing},
                           {"scheme", config.scheme == Scheme::paper ? "paper" : "consistent"},
                           {"gamma", config.pressure.gamma},
                           {"kernel", config.kernel.type == KernelType::singular ? "singular" : "non_singular"},
-                          {"plate_begin", config.plate.begin},
-                          {"plate_end", config.plate.end}};
-  report["analytic"] = {{"stagnation_pressure", jet.stagnation_pressure()},
-                        {"normal_force", jet.normal_force()},
-                        {"h1", jet.sheet_thickness(Side::h1)},
-                        {"h2", jet.sheet_thickness(Side::h2)},
+                          {"plate_begin", target.begin},
+                          {"plate_end", target.end}};
+  report["frame"] = {
+      {"origin", target.frame.origin.component}, {"x", target.frame.x.component}, {"y", target.frame.y.component}};
+  const bool is_split = target.type == TargetType::wedge || target.type == TargetType::cup;
+  const auto sheet = [&](Side side) {
+    return is_split ? 0.5 * target.width : analytic_jet(target).sheet_thickness(side);
+  };
+  report["analytic"] = {{"stagnation_pressure", 0.5 * target.density * target.speed * target.speed},
+                        {"force", validation.force},
+                        {"h1", sheet(Side::h1)},
+                        {"h2", sheet(Side::h2)},
                         {"film_h1", to_json(validation.analytic_film_h1)},
                         {"film_h2", to_json(validation.analytic_film_h2)}};
   report["differences"] = validation.differences;
@@ -270,10 +371,12 @@ std::string scheme_text(const Case& config) {
 
 std::string to_table(const Validation& validation) {
   const Case& config = validation.config;
+  const JetTarget& target = validation.target;
   const SnapshotHeader& last = validation.last;
-  std::string table = fmt::format("case       {}: {} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
-                                  config.jet.angle, config.jet.width / config.particles.spacing, scheme_text(config),
-                                  config.kernel.type == KernelType::singular ? "singular" : "non-singular");
+  std::string table =
+      fmt::format("case       {}: {}, {:.6g} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name, word_of(target.type),
+                  target.angle * 180.0 / std::numbers::pi, target.width / target.spacing, scheme_text(config),
+                  config.kernel.type == KernelType::singular ? "singular" : "non-singular");
   table += fmt::format("run        {} at t = {:.6g} s, step {}\n", printable(last.status), last.time, last.step);
   if (!last.message.empty()) table += fmt::format("           {}\n", printable(last.message));
   for (const std::string& difference : validation.differences)
@@ -313,9 +416,11 @@ void write_report(const Validation& validation, const std::string& directory) {
     film.print("{:.9g},{:.9g},{:.9g}\n", column.x, column.thickness, column.analytic);
   film.finish();
 
-  const AnalyticJet jet = analytic_jet(validation.config);
-  write_surface(jet, validation.config, folder / "surface.csv");
-  write_isobars(jet, validation.config, folder / "isobars.csv");
+  const JetTarget& target = validation.target;
+  if (target.type == TargetType::plate || target.type == TargetType::jet) {
+    write_surface(target, folder / "surface.csv");
+    write_isobars(target, folder / "isobars.csv");
+  }
 
   TextFile report(folder / "validation.json");
   report.print("{}", to_json(validation));

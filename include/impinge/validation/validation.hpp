@@ -1,5 +1,5 @@
 #pragma once
-// The report on a run of a jet case: the files in its directory against the analytic jet.
+// The report on a run with a plane jet: the files in its directory against the exact solution.
 
 #include <cstdint>
 #include <optional>
@@ -27,6 +27,8 @@ struct Validation {
   Case config;          ///< the case as the last snapshot has it
   SnapshotHeader last;  ///< of the last snapshot
   std::string last_path;
+  JetTarget target;                      ///< what the jet meets; of two jets through the stagnation point that is found
+  double force = 0.0;                    ///< that metrics.force_ratio refers to [N/m]
   std::vector<std::string> differences;  ///< what acts on the run and not on the analytic jet, with its strength
   std::optional<TimeSpan> window;        ///< of the wall-pressure average
   std::vector<double> times;             ///< of the compared snapshots [s]
@@ -42,7 +44,7 @@ struct Validation {
 
 /// Reads the run in a directory, which may have failed, and compares it. Wall averages are those of the last snapshot
 /// that has one. Needs MPI (the HDF5 library is the parallel one) but is not collective. Throws InputError where there
-/// is no directory, no snapshot, a case other than a jet, more than one case, or no snapshot in the selection;
+/// is no directory, no snapshot, a case without a jet_target, more than one case, or no snapshot in the selection;
 /// FileError where a file cannot be read.
 Validation validate(const std::string& directory, const SnapshotSelection& selection = {});
 
@@ -53,7 +55,7 @@ std::string to_json(const Validation& validation);
 std::string to_table(const Validation& validation);
 
 /// Writes into `directory`, which it creates: validation.json, the profiles wall_pressure.csv and film_thickness.csv,
-/// and the analytic jet as lines, surface.csv and isobars.csv. Throws FileError.
+/// and the analytic jet of a plate or of two jets as lines, surface.csv and isobars.csv. Throws FileError.
 void write_report(const Validation& validation, const std::string& directory);
 
 }  // namespace impinge
