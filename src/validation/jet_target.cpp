@@ -75,7 +75,7 @@ struct Arm {
     }
     return sum;
   }
-  bool straight() const { return straight_end() == length(); }
+  bool straight() const { return straight_end() > (1.0 - 1e-9) * length(); }
 };
 
 /// The wet sides of all walls, as ways with the fluid on their right.
@@ -248,8 +248,8 @@ class TargetSearch {
     // Beside the axis at both sides, so that it does not matter on which face an edge counts.
     const Vector<2> beside = 1e-6 * target_.width * left_of(direction_);
     const Meeting left = meeting(from_ + beside), right = meeting(from_ - beside);
-    if (std::isinf(left.distance) || std::isinf(right.distance)) refuse("its inlet's axis meets no wall");
-    if (std::abs(left.distance - right.distance) > symmetric * target_.width)
+    if (std::isinf(left.distance) && std::isinf(right.distance)) refuse("its inlet's axis meets no wall");
+    if (!(std::abs(left.distance - right.distance) <= symmetric * target_.width))
       refuse("its inlet's axis meets the end of a wall");
     target_.distance = 0.5 * (left.distance + right.distance);
     target_.frame = {.origin = from_ + target_.distance * direction_, .x = direction_, .y = left_of(direction_)};

@@ -424,7 +424,7 @@ TEST_F(RunDirectory, ReportHoldsMetricsAndProfiles) {
   std::ifstream file(directory + "/validation/validation.json");
   const auto report = nlohmann::json::parse(file);
   EXPECT_EQ(report["case"], "exact");
-  EXPECT_EQ(report["parameters"]["angle"], 60.0);
+  EXPECT_NEAR(report["parameters"]["angle"].get<double>(), 60.0, 1e-12);
   EXPECT_NEAR(report["parameters"]["width_over_spacing"].get<double>(), 20.0, 1e-12);
   EXPECT_EQ(report["last_snapshot"], "exact_00001000.vtkhdf");
   EXPECT_EQ(report["window"]["end"], 2.0);

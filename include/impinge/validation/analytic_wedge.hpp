@@ -27,7 +27,7 @@ class AnalyticWedge {
   /// Force along the jet per unit depth, rho U^2 H (1 - cos b) [N/m].
   double force() const { return force_; }
 
-  /// Pressure on a face at a distance from the edge [Pa]; to 1e-6 of rho U^2 / 2.
+  /// Pressure on a face at a distance from the edge [Pa]; to 1e-5 of rho U^2 / 2.
   double pressure(double distance) const;
 
  private:
