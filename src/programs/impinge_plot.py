@@ -6,7 +6,8 @@ pressure.png, speed.png, surface.png, and history.png, probes.png, gauges.png, s
 such a table, into DIR/<case>_figures. In three dimensions it draws a slice.
 
 If DIR/validation holds what impinge-validate wrote of a jet, it also draws the jet beside the analytic one:
-pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation.
+pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation; of a wedge or a cup
+wall_pressure.png.
 
 Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's. Exit code 3: neither has them.
 """
@@ -55,7 +56,7 @@ def read_table(path):
 
 
 class JetRun:
-    """The report, the analytic lines and the last snapshot of a run; x and y in jet widths."""
+    """The report of impinge-validate; x and y in jet widths."""
 
     def __init__(self, directory):
         self.folder = directory / "validation"
@@ -65,7 +66,13 @@ class JetRun:
         self.spacing = parameters["spacing"] / self.width
         self.dynamic_pressure = self.report["analytic"]["stagnation_pressure"]
         self.plate = np.array([parameters["plate_begin"], parameters["plate_end"]]) / self.width
+        self.has_field = self.report["target"] in ("plate", "jet")
+        if self.has_field:
+            self.read_field(directory)
 
+    def read_field(self, directory):
+        """The analytic lines and the last snapshot, in the frame of the analytic jet."""
+        frame = {name: np.array(vector) for name, vector in self.report["frame"].items()}
         surface = read_table(self.folder / "surface.csv")
         self.surface = [
             np.column_stack((surface["x_m"], surface["y_m"]))[surface["sheet"] == sheet] / self.width for sheet in (1, 2)
@@ -76,7 +83,7 @@ class JetRun:
 
         with h5py.File(directory / self.report["last_snapshot"], "r") as file:
             data = file["VTKHDF/PointData"]
-            position = file["VTKHDF/Points"][:, :2] / self.width
+            position = (file["VTKHDF/Points"][:, :2] - frame["origin"]) @ np.column_stack((frame["x"], frame["y"])) / self.width
             self.type, self.rank = data["type"][:], data["rank"][:]
             pressure = data["pressure"][:]
         finite = np.isfinite(position).all(axis=1)
@@ -94,7 +101,7 @@ class JetRun:
     def title(self):
         parameters, report = self.report["parameters"], self.report
         return (
-            f"{report['case']}: {parameters['angle']:g}°, $H/d_p$ = {parameters['width_over_spacing']:g}, "
+            f"{report['case']}: {report['target']}, {parameters['angle']:.6g}°, $H/d_p$ = {parameters['width_over_spacing']:g}, "
             + (f"paper's scheme, $\\gamma$ = {parameters['gamma']:g}" if parameters["scheme"] == "paper" else "consistent scheme")
             + f", t = {report['time']:.3f} s"
             + (f" ({report['status']})" if report["status"] != "finished" else "")
@@ -176,6 +183,8 @@ def plot_profile(run, table, computed, analytic, y_label, name, note):
         (computed, dict(color=COMPUTED, marker=".", ms=4, lw=0.8, label="computed")),
         (analytic, dict(color=ANALYTIC, lw=1.4, label="analytic")),
     ):
+        if column == analytic and not np.isfinite(table[column]).any():
+            continue  # there is no exact solution
         for xs, values in zip(np.split(x, gap), np.split(table[column], gap)):
             axes.plot(xs, values, **style)
             style["label"] = None
@@ -466,7 +475,8 @@ def main():
     try:
         if (arguments.directory / "validation/validation.json").exists():
             run = JetRun(arguments.directory)
-            for plot in (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks):
+            plots = (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks)
+            for plot in plots if run.has_field else (plot_wall_pressure,):
                 plot(run)
         Figures(arguments.directory, arguments.name, arguments.step, arguments.time).draw()
     except (OSError, KeyError, ValueError) as error:

@@ -471,6 +471,37 @@ class Run(System):
                      "film_thickness.csv"):
             self.assertTrue((validation / name).stat().st_size > 0, name)
 
+    def test_validation_measures_jets_of_scenes(self):
+        # A quarter of the shipped cases' resolution, and the start alone: that all is found, finite and drawn.
+        for name, target, none in (
+            ("tilted-plate", "plate", {"sheet_speed", "plane_x", "plane_drift"}),
+            ("wedge", "wedge", {"field_l2", "mean_field_l2", "velocity_rms", "surface_rms_dp", "plane_x", "plane_drift"}),
+            ("opposed-jets", "jet", {"sheet_speed"}),
+        ):
+            out = self.directory / name
+            done = impinge(ROOT / f"input/{name}/{name}.toml", "--set", "particles.spacing=0.02", "--set", "time.dt=1.6e-3",
+                           "--set", "time.end=0.5", "--set", "output.average_start=0.4", "--set",
+                           f"output.directory={out}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = call(BIN / "impinge-validate", out)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            report = json.loads((out / "validation/validation.json").read_text())
+            self.assertEqual(report["target"], target)
+            metrics = report["metrics"]
+            self.assertEqual({key for key, value in metrics.items() if value is None} - {"film_h1", "film_h2"}, none, name)
+            self.assertLess(abs(metrics["force_ratio"] - 1), 0.3)
+            self.assertEqual(metrics["particle_balance"], 0)
+            self.assertTrue((out / "validation/wall_pressure.png").stat().st_size > 0)
+            self.assertEqual((out / "validation/pressure.png").exists(), target != "wedge")
+
+    def test_validation_tells_which_jets_it_measures(self):
+        out = self.directory / "out"
+        done = impinge(ROOT / "input/drop/drop.toml", "--set", "time.end=0.01", "--set", f"output.directory={out}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = call(BIN / "impinge-validate", out)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("it has 0 inlets. Measured are: ", done.stderr)
+
     def test_what_is_observed_goes_on_after_a_restart_and_is_drawn(self):
         path = self.directory / "column.toml"
         path.write_text("""geometry = "tank"
