@@ -149,7 +149,7 @@ class TargetSearch {
   double until_outlet(Way&& at, double length) const {
     const double step = 0.25 * target_.spacing;
     double before = 0.0;
-    for (double next = step; before < length; before = next, next = std::min(next + step, length)) {
+    for (double next = std::min(step, length); before < length; before = next, next = std::min(next + step, length)) {
       if (!is_swallowed(at(next))) continue;
       for (int k = 0; k < 50; ++k) {
         const double middle = 0.5 * (before + next);
@@ -204,6 +204,9 @@ class TargetSearch {
     return first;
   }
 
+  /// True for an arc that leaves the flow along it: where a sheet leaves it is not known.
+  static bool turns_away(const OutlineEdge& edge, double side) { return side * edge.sweep > 0.0; }
+
   /// The way from a point of a face along it and the faces that join it, up to an outlet, an end, or where the wall
   /// turns away from the flow.
   Arm arm(const Meeting& from, double side) const {
@@ -219,7 +222,7 @@ class TargetSearch {
       const OutlineEdge* next = nullptr;
       double most = -leaving;
       for (const OutlineEdge& way : ways) {
-        if (&way == last || norm(way.begin - last->end) > tolerance) continue;
+        if (&way == last || norm(way.begin - last->end) > tolerance || turns_away(way, side)) continue;
         const double turn = -side * angle_between(tangent(*last, 1.0), tangent(way, 0.0));  // towards the fluid
         if (turn < most || std::abs(turn) > pi - leaving) continue;
         most = turn;
@@ -230,6 +233,7 @@ class TargetSearch {
       last = next;
     }
     if (arm.edges.empty()) refuse("its jet meets the end of a wall");
+    if (turns_away(arm.edges.front(), side)) refuse("its jet meets a wall that curves away from it");
     // Short of the first outlet.
     const double above = 0.25 * target_.spacing;
     for (std::size_t k = 0; k < arm.edges.size(); ++k) {
@@ -239,8 +243,9 @@ class TargetSearch {
           until_outlet([&](double x) { return edge.at(x / length) + side * above * edge.normal(x / length); }, length);
       if (wet == length) continue;
       edge = first_part(edge, wet / length);
-      arm.edges.resize(k + 1);
+      arm.edges.resize(wet > tolerance ? k + 1 : k);
     }
+    if (arm.edges.empty()) refuse("an outlet is where its jet meets a wall");
     return arm;
   }
 

@@ -230,6 +230,9 @@ TEST(JetTarget, WhatIsNotMeasuredIsToldApart) {
       {jet + line(turn, {{{0.0, 0.0}}, {{0.0, 2.0}}}), "its inlet's axis meets the end of a wall"},
       {jet + line(turn, {{{0.0, -0.4}}, {{0.0, 0.3}}, {{-0.3, 0.6}}}), "is not symmetric"},
       {jet + line(turn, {{{-0.2, -0.3}}, {{0.2, 0.3}}}), "from -"},
+      {jet + "[[wall]]\nshape = \"circle\"\nradius = 0.3\ncenter = [0.3, 0.0]\n", "curves away"},
+      {jet + plate + polygon(turn, "outlet", {{{-0.2, -0.2}}, {{0.2, -0.2}}, {{0.2, 0.2}}, {{-0.2, 0.2}}}),
+       "an outlet is where its jet meets a wall"},
       {inlet(turn, {{-1.4, 0.0}}, {{1.0, 0.0}}, "times = [0.0, 1.0]\nspeeds = [1.0, 2.0]") + plate,
        "the speed of the inlet inlet_1 changes in time"},
       {jet + plate +
