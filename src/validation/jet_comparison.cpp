@@ -101,6 +101,9 @@ JetComparison::JetComparison(const JetTarget& target)
       wall_(target, jet_.normal_force(), [jet = jet_](double x) { return jet.wall_pressure(x); }) {
   const double width = jet_.width();
   const double thin = jet_.plate_position_of_cp(0.01, Side::h2);
+  constexpr double beside_outlet = 2.0;  // particles there have a free surface where they are cut off [dp]
+  field_begin_ = std::max(-2.0 * width, target.begin + beside_outlet * spacing_);
+  field_end_ = std::min(4.0 * width, target.end - beside_outlet * spacing_);
   plate_ = columns(target.begin, target.end);
   h1_ = columns(1.5 * width, std::min(3.0 * width, target.end));
   h2_ = columns(std::max(thin - width, target.begin), thin - 0.5 * width);
@@ -174,7 +177,7 @@ void JetComparison::add_field(const Particles<2>& particles) {
     const Vector<2>& position = particles.position[i];
     if (particles.type[i] != ParticleType::fluid) continue;
     for (Columns* stretch : {&plate_, &h1_, &h2_}) count(position, *stretch);
-    if (position[0] < -2.0 * jet_.width() || position[0] > 4.0 * jet_.width()) continue;
+    if (position[0] < field_begin_ || position[0] > field_end_) continue;
 
     const auto state = jet_.state(position);
     const double analytic = state ? state->pressure : 0.0;

@@ -18,9 +18,10 @@ namespace impinge {
 AnalyticJet analytic_jet(const JetTarget& target);
 
 /// Measures of a run. H: jet width, U: speed, dp: particle spacing, p_a: analytic pressure. "Particles" are the fluid
-/// particles with -2 H <= x <= 4 H in all compared snapshots; outside the analytic fluid p_a = 0. An empty value: the
-/// run does not give it, there is no exact solution for it, or a number that it needs is not finite. Between two jets
-/// the wall particles are those of in_frame, and a time average is that over the snapshots.
+/// particles with -2 H <= x <= 4 H, and at least 2 dp before the ends of the wall, in all compared snapshots; outside
+/// the analytic fluid p_a = 0. An empty value: the run does not give it, there is no exact solution for it, or a number
+/// that it needs is not finite. Between two jets the wall particles are those of in_frame, and a time average is that
+/// over the snapshots.
 struct JetMetrics {
   /// sqrt(sum (p - p_a)^2 l / sum p_a^2 l) [-] over the wall particles with p_a > 1e-3 rho U^2 / 2; p: time average, l:
   /// length of wall that a particle stands for, dp on a plate.
@@ -148,6 +149,7 @@ class JetComparison {
   double spacing_;
   double area_;  // of a particle: of two folded halves each has half [m^2]
   WallComparison wall_;
+  double field_begin_, field_end_;  // range of x of the particles that count [m]
   Columns plate_, h1_, h2_;
 
   int snapshots_ = 0;
