@@ -134,35 +134,102 @@ std::optional<Vector<2>> common_point(const OutlineEdge& first, const OutlineEdg
   return std::nullopt;
 }
 
+/// Calls use(share of the first, share of the second) for the ends of each connection of two edges that may be the
+/// shortest, here or on a piece of their way.
+template <class Use>
+void for_connections(const OutlineEdge& first, const OutlineEdge& second, Use&& use) {
+  for (const double end : {0.0, 1.0}) use(end, second.nearest_share(first.at(end)));
+  for (const double end : {0.0, 1.0}) use(first.nearest_share(second.at(end)), end);
+  // Between the ends it is perpendicular to both: on the line from an arc's centre to the segment or to the other
+  // centre; of parallel segments anywhere.
+  if (!first.straight() && second.straight()) {
+    const double foot = second.nearest_share(first.center);
+    use(first.nearest_share(second.at(foot)), foot);
+  } else if (first.straight() && !second.straight()) {
+    const double foot = first.nearest_share(second.center);
+    use(foot, second.nearest_share(first.at(foot)));
+  } else if (first.straight()) {
+    const double middle = 0.5 * (first.nearest_share(second.begin) + first.nearest_share(second.end));
+    use(middle, second.nearest_share(first.at(middle)));
+  } else {
+    const Vector<2> between = second.center - first.center;
+    if (norm(between) == 0.0) return;
+    const Vector<2> reach = first.radius / norm(between) * between;
+    for (const Vector<2>& point : {first.center + reach, first.center - reach}) {
+      const double begin = first.nearest_share(point);
+      use(begin, second.nearest_share(first.at(begin)));
+    }
+  }
+}
+
 /// The shortest connection of two edges.
 Gap gap_between(const OutlineEdge& first, const OutlineEdge& second) {
   if (const auto point = common_point(first, second)) return {0.0, *point, *point};
   Gap gap;
-  const auto consider = [&](const Vector<2>& begin, const Vector<2>& end) {
+  for_connections(first, second, [&](double one, double two) {
+    const Vector<2> begin = first.at(one), end = second.at(two);
     const double width = norm(end - begin);
     if (width < gap.width) gap = {width, begin, end};
-  };
-  for (const Vector<2>& end : {first.begin, first.end}) consider(end, second.nearest(end));
-  for (const Vector<2>& end : {second.begin, second.end}) consider(first.nearest(end), end);
-  // Between the ends it is perpendicular to both: on the line from an arc's centre to the segment or to the other
-  // centre.
-  if (!first.straight() && second.straight()) {
-    const Vector<2> foot = second.nearest(first.center);
-    consider(first.nearest(foot), foot);
-  } else if (first.straight() && !second.straight()) {
-    const Vector<2> foot = first.nearest(second.center);
-    consider(foot, second.nearest(foot));
-  } else if (!first.straight()) {
-    const Vector<2> between = second.center - first.center;
-    if (norm(between) > 0.0) {
-      const Vector<2> reach = first.radius / norm(between) * between;
-      for (const Vector<2>& point : {first.center + reach, first.center - reach}) {
-        const Vector<2> begin = first.nearest(point);
-        consider(begin, second.nearest(begin));
+  });
+  return gap;
+}
+
+/// The edges of an outline, long arcs in pieces: no piece comes near itself again.
+class Pieces {
+ public:
+  explicit Pieces(const Outline& outline) : closed_(outline.closed()) {
+    constexpr double longest = 0.5 * pi;  // of an arc [rad]
+    for (const OutlineEdge& edge : outline.edges()) {
+      const int count = std::max(1, static_cast<int>(std::ceil(std::abs(edge.sweep) / longest - angle_error)));
+      for (int k = 0; k < count; ++k) {
+        OutlineEdge piece = edge;
+        piece.begin = edge.at(static_cast<double>(k) / count);
+        piece.end = edge.at((k + 1.0) / count);
+        piece.sweep = edge.sweep / count;
+        edges_.push_back(piece);
       }
     }
   }
-  return gap;
+
+  const std::vector<OutlineEdge>& edges() const { return edges_; }
+
+  /// Calls use(point) for the points at a small distance [m] along the outline from a share of a piece.
+  template <class Use>
+  void for_steps(std::size_t k, double share, double distance, Use&& use) const {
+    const std::size_t n = edges_.size();
+    const double step = distance / edges_[k].length();
+    if (share > share_error) {
+      use(edges_[k].at(share - step));
+    } else if (closed_ || k > 0) {
+      const OutlineEdge& before = edges_[(k + n - 1) % n];
+      use(before.at(1.0 - distance / before.length()));
+    }
+    if (share < 1.0 - share_error) {
+      use(edges_[k].at(share + step));
+    } else if (closed_ || k + 1 < n) {
+      const OutlineEdge& after = edges_[(k + 1) % n];
+      use(after.at(distance / after.length()));
+    }
+  }
+
+ private:
+  bool closed_;
+  std::vector<OutlineEdge> edges_;
+};
+
+/// True if no small step of either end along its outline makes a connection shorter. Each end: piece, share.
+bool is_throat(const Pieces& first, std::pair<std::size_t, double> one, const Pieces& second,
+               std::pair<std::size_t, double> two, double width) {
+  constexpr double small = 0.01, rounding = 1e-9;  // of the width
+  bool result = true;
+  const auto step_from = [&](const Pieces& pieces, const auto& end, const OutlineEdge& other) {
+    pieces.for_steps(end.first, end.second, small * width, [&](const Vector<2>& point) {
+      if (norm(other.nearest(point) - point) < (1.0 - rounding) * width) result = false;
+    });
+  };
+  step_from(first, one, second.edges()[two.first]);
+  if (result) step_from(second, two, first.edges()[one.first]);
+  return result;
 }
 
 Box<2> bounds_of(std::span<const Vector<2>> points) {
@@ -426,6 +493,26 @@ Gap narrowest_gap(const Outline& first, const Outline& second) {
       if (gap.width < narrowest.width) narrowest = gap;
     }
   }
+  return narrowest;
+}
+
+std::optional<Gap> narrowest_throat(const Outline& first, const Outline& second, double least,
+                                    const std::function<bool(const Gap&)>& counts) {
+  const Pieces of_first(first), of_second(second);
+  const auto &ones = of_first.edges(), &twos = of_second.edges();
+  Gap narrowest;
+  for (std::size_t i = 0; i < ones.size(); ++i) {
+    for (std::size_t j = &first == &second ? i + 1 : 0; j < twos.size(); ++j) {
+      for_connections(ones[i], twos[j], [&](double one, double two) {
+        const Gap gap{.width = 0.0, .begin = ones[i].at(one), .end = twos[j].at(two)};
+        const double width = norm(gap.end - gap.begin);
+        if (!(width > least && width < narrowest.width)) return;
+        if (!is_throat(of_first, {i, one}, of_second, {j, two}, width)) return;
+        if (const Gap found{width, gap.begin, gap.end}; counts(found)) narrowest = found;
+      });
+    }
+  }
+  if (std::isinf(narrowest.width)) return std::nullopt;
   return narrowest;
 }
 

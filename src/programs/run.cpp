@@ -57,25 +57,21 @@ void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) 
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 
-/// A region's name, its volume, and the relative error of its particles' volume.
-struct FluidVolume {
-  std::string name;
-  double volume;
-  double error;
-};
-
+/// A line for each region: its volume between the walls, its particles, the error of their volume.
 template <int Dim>
-std::vector<FluidVolume> fluid_volumes(const Case& config) {
-  std::vector<FluidVolume> all;
+std::vector<std::string> region_lines(const Case& config) {
+  std::vector<std::string> lines;
   for (const FluidRegion& region : config.regions) {
-    const auto [volume, particles] = volume_between_walls<Dim>(config, config, region);
-    all.push_back({region.name, volume, particles / volume - 1.0});
+    const auto [volume, of_particles] = volume_between_walls<Dim>(config, config, region);
+    lines.push_back(fmt::format("fluid       {}: {:.6g} m^{}, {:.0f} particles, their volume {:+.2f} %", region.name,
+                                volume, Dim, of_particles / std::pow(config.particles.spacing, Dim),
+                                100.0 * (of_particles / volume - 1.0)));
   }
-  return all;
+  return lines;
 }
 
-void print_warnings(const Case& config) {
-  for (const std::string& text : scene_warnings(config, config)) fmt::print(stderr, "impinge: warning: {}\n", text);
+void print_warnings(const SceneReport& report) {
+  for (const std::string& text : report.warnings) fmt::print(stderr, "impinge: warning: {}\n", text);
 }
 
 template <int Dim>
@@ -106,10 +102,10 @@ void check(MPI_Comm comm, const Case& config) {
       "{} "
       "are free for a rank\n",
       bytes_text(bytes), bytes / static_cast<double>(report.particles), bytes_text(most), bytes_text(free));
-  for (const auto& [name, volume, error] : fluid_volumes<Dim>(config))
-    fmt::print("fluid       {}: {:.6g} m^{}, the particles' {:+.2f} %\n", name, volume, Dim, 100.0 * error);
-  for (const std::string& line : scene_lines(config, config)) fmt::print("{}\n", line);
-  print_warnings(config);
+  for (const std::string& line : region_lines<Dim>(config)) fmt::print("{}\n", line);
+  const SceneReport scene = report_scene(config, config);
+  for (const std::string& line : scene.lines) fmt::print("{}\n", line);
+  print_warnings(scene);
   fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
   if (std::isfinite(cfl_dt))
     fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
@@ -334,7 +330,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
-  if (first) print_warnings(config);
+  if (first) print_warnings(report_scene(config, config));
   output.save(simulation, "running");
   return run(comm, config, simulation, observers, output);
 }

@@ -1,38 +1,110 @@
 #include "impinge/scenes/scene_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <optional>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
-#include "impinge/scenes/wet_space.hpp"
+#include "impinge/scenes/wall_gaps.hpp"
 
 namespace impinge {
 namespace {
 
-constexpr double touching = 0.01;  // nearer walls have no gap [dp]
 constexpr double least_gap = 2.0;  // that fluid can flow through [dp]
 
-/// Two walls and the gap between them.
-struct WallGap {
-  std::size_t one, other;
-  double width;  ///< [dp]
-  Vector<2> middle;
+/// Times at which the walls are looked at: where all motions are told by few [s].
+std::vector<double> times_of_all(const std::vector<MotionEntry>& motions, double end) {
+  constexpr std::size_t most = 400;
+  std::vector<double> times{0.0};
+  for (const MotionEntry& motion : motions)
+    for (const double time : times_of(motion, end, most)) times.push_back(time);
+  std::ranges::sort(times);
+  const auto [again, stop] = std::ranges::unique(times);
+  times.erase(again, stop);
+  return times;
+}
+
+std::string time_text(const WallGap& gap) { return gap.time > 0.0 ? fmt::format(" at t = {:.4g} s", gap.time) : ""; }
+
+/// Faces, and pieces in line with each other that they are made of.
+std::string faces_text(const WallEntry& entry, const Outline& outline) {
+  const std::size_t faces = outline.edges().size(), corners = entry.points.size();
+  std::size_t pieces = faces;
+  if (entry.shape == ShapeType::polygon) pieces = corners;
+  if (entry.shape == ShapeType::polyline) pieces = corners - 1;
+  return fmt::format("{} face{}{}", faces, faces == 1 ? "" : "s",
+                     pieces > faces ? fmt::format(" of {} pieces", pieces) : "");
+}
+
+std::string wall_line(const WallEntry& entry, const Wall& wall) {
+  std::string text = fmt::format("wall        {}: {:.6g} m long, ", wall.name, wall.outline.length());
+  if (wall.outline.closed()) text += fmt::format("{:.6g} m^2 enclosed, ", wall.outline.volume());
+  text += fmt::format("{}, wet {}", faces_text(entry, wall.outline), word_of(entry.wet));
+  if (entry.motion != no_motion) text += fmt::format(", moves by {}", entry.motion);
+  return text;
+}
+
+/// The narrowest gap of a wall; nothing if it has none.
+std::string gap_text(std::size_t wall, const std::vector<WallGap>& gaps, const std::vector<Wall>& walls) {
+  const WallGap* narrowest = nullptr;
+  for (const WallGap& gap : gaps)
+    if ((gap.one == wall || gap.other == wall) && (!narrowest || gap.width < narrowest->width)) narrowest = &gap;
+  if (!narrowest) return "";
+  const std::size_t other = narrowest->one == wall ? narrowest->other : narrowest->one;
+  return fmt::format(", narrowest gap {:.3g} dp, to {}, at ({:.4g}, {:.4g}) m{}", narrowest->width,
+                     other == wall ? "itself" : walls[other].name, narrowest->place[0], narrowest->place[1],
+                     time_text(*narrowest));
+}
+
+std::string gap_warning(const WallGap& gap, const std::vector<Wall>& walls) {
+  const std::string between = gap.one == gap.other ? fmt::format("within the wall \"{}\"", walls[gap.one].name)
+                                                   : fmt::format("between the walls \"{}\" and \"{}\"",
+                                                                 walls[gap.one].name, walls[gap.other].name);
+  return fmt::format("the gap {} is {:.3g} dp wide at ({:.6g}, {:.6g}) m{}; fluid needs {} dp to pass", between,
+                     gap.width, gap.place[0], gap.place[1], time_text(gap), least_gap);
+}
+
+/// Between which numbers a value stays; nothing if it does not change.
+class Range {
+ public:
+  void add(double value) {
+    low_ = std::min(low_, value);
+    high_ = std::max(high_, value);
+  }
+  std::string text(const char* name, const char* unit) const {
+    constexpr double rounding = 1e-12;
+    if (!(high_ - low_ > rounding)) return "";
+    return fmt::format(", {} from {:.3g} to {:.3g} {}", name, low_, high_, unit);
+  }
+
+ private:
+  double low_ = 0.0, high_ = 0.0;
 };
 
-/// The gaps between all pairs of walls at the start, where they are wet.
-std::vector<WallGap> gaps_between(const std::vector<Wall>& walls, double spacing) {
-  std::vector<WallGap> gaps;
-  const WetSpace wet(walls, 0.0, spacing);
-  std::vector<Outline> outlines;
-  for (const Wall& wall : walls) outlines.push_back(outline_at(wall, 0.0));
-  for (std::size_t b = 0; b < walls.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      const Gap gap = narrowest_gap(outlines[a], outlines[b]);
-      const Vector<2> middle = 0.5 * (gap.begin + gap.end);
-      if (gap.width > touching * spacing && wet.contains(middle)) gaps.push_back({a, b, gap.width / spacing, middle});
-    }
+std::string motion_line(const MotionEntry& entry, const std::vector<WallEntry>& walls, double end) {
+  constexpr std::size_t most = 4000;
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  const auto motion = motion_of(entry);
+  const Vector<2> center = vector_of<2>(entry.center);
+  Range x, y, turn;
+  double angle = 0.0;
+  for (const double time : times_of(entry, end, most)) {
+    const Pose<2> pose = (*motion)(time);
+    const Vector<2> shift = pose.of_position(center) - center, along = pose.of_direction({{1.0, 0.0}});
+    angle += std::remainder(std::atan2(along[1], along[0]) - angle, 2.0 * std::numbers::pi);  // over full turns, too
+    x.add(shift[0]);
+    y.add(shift[1]);
+    turn.add(degrees * angle);
   }
-  return gaps;
+  std::string text =
+      fmt::format("motion      {}: {}, t = {:.6g} to {:.6g} s{}{}{}", entry.name, word_of(entry.type), entry.start,
+                  std::min(entry.end, end), x.text("x", "m"), y.text("y", "m"), turn.text("angle", "deg"));
+  std::vector<std::string> moved;
+  for (const WallEntry& wall : walls)
+    if (wall.motion == entry.name) moved.push_back(wall.name);
+  return text + (moved.empty() ? ", moves no wall" : fmt::format(", moves {}", fmt::join(moved, ", ")));
 }
 
 std::string inlet_line(const InletEntry& entry, const MethodSettings& method) {
@@ -58,44 +130,21 @@ std::string outlet_line(const OutletEntry& entry) {
 
 }  // namespace
 
-std::vector<std::string> scene_lines(const MethodSettings& method, const SceneSettings& settings) {
-  std::vector<std::string> lines;
+SceneReport report_scene(const MethodSettings& method, const SceneSettings& settings) {
+  SceneReport report;
+  const double end = method.time.end;
   const std::vector<Wall> walls = walls_of(settings.scene_walls, settings.motions);
-  const std::vector<WallGap> gaps = gaps_between(walls, method.particles.spacing);
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const Outline& outline = walls[k].outline;
-    const std::size_t faces = outline.edges().size();
-    std::string text = fmt::format("wall        {}: {:.6g} m long, ", walls[k].name, outline.length());
-    if (outline.closed()) text += fmt::format("{:.6g} m^2 enclosed, ", outline.volume());
-    text += fmt::format("{} face{}, wet {}", faces, faces == 1 ? "" : "s",
-                        words(Wet{})[static_cast<std::size_t>(settings.scene_walls[k].wet)]);
-    if (settings.scene_walls[k].motion != no_motion)
-      text += fmt::format(", moves by {}", settings.scene_walls[k].motion);
-    const WallGap* narrowest = nullptr;
-    for (const WallGap& gap : gaps)
-      if ((gap.one == k || gap.other == k) && (!narrowest || gap.width < narrowest->width)) narrowest = &gap;
-    if (narrowest)
-      text += fmt::format(", narrowest gap {:.3g} dp, to {}", narrowest->width,
-                          walls[narrowest->one == k ? narrowest->other : narrowest->one].name);
-    lines.push_back(text);
-  }
-  for (const InletEntry& entry : settings.inlets) lines.push_back(inlet_line(entry, method));
+  const std::vector<WallGap> gaps = wall_gaps(walls, times_of_all(settings.motions, end), method.particles.spacing);
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    report.lines.push_back(wall_line(settings.scene_walls[k], walls[k]) + gap_text(k, gaps, walls));
+  for (const MotionEntry& entry : settings.motions)
+    report.lines.push_back(motion_line(entry, settings.scene_walls, end));
+  for (const InletEntry& entry : settings.inlets) report.lines.push_back(inlet_line(entry, method));
   for (const OutletEntry& entry : settings.outlets)
-    lines.push_back(method.dimension == 2 ? outlet_line<2>(entry) : outlet_line<3>(entry));
-  return lines;
-}
-
-std::vector<std::string> scene_warnings(const MethodSettings& method, const SceneSettings& settings) {
-  std::vector<std::string> texts;
-  const std::vector<Wall> walls = walls_of(settings.scene_walls, settings.motions);
-  for (const WallGap& gap : gaps_between(walls, method.particles.spacing)) {
-    if (gap.width >= least_gap) continue;
-    texts.push_back(
-        fmt::format("the gap between the walls \"{}\" and \"{}\" is {:.3g} dp wide at ({:.6g}, {:.6g}) m; fluid "
-                    "needs {} dp to pass",
-                    walls[gap.one].name, walls[gap.other].name, gap.width, gap.middle[0], gap.middle[1], least_gap));
-  }
-  return texts;
+    report.lines.push_back(method.dimension == 2 ? outlet_line<2>(entry) : outlet_line<3>(entry));
+  for (const WallGap& gap : gaps)
+    if (gap.width < least_gap) report.warnings.push_back(gap_warning(gap, walls));
+  return report;
 }
 
 }  // namespace impinge

@@ -188,22 +188,29 @@ TEST(SceneWalls, AreTold) {
       unit_square +
       "[[wall]]\nname = \"tank\"\nshape = \"box\"\nlow = [0, 0]\nhigh = [2, 1.5]\nwet = \"inside\"\nmotion = \"sway\"\n"
       "[[wall]]\nname = \"post\"\nshape = \"circle\"\ncenter = [1, 1.2]\nradius = 0.1\nmotion = \"sway\"\n"
-      "[[wall]]\nname = \"plate\"\nshape = \"polyline\"\npoints = [[0.2, 1], [0.4, 1], [0.4, 1.2]]\nmotion = \"sway\"\n"
+      "[[wall]]\nname = \"plate\"\nshape = \"polyline\"\npoints = [[0.2, 1], [0.3, 1], [0.4, 1], [0.4, 1.2]]\nmotion = "
+      "\"sway\"\n"
       "[[motion]]\nname = \"sway\"\ntype = \"constant\"\n"
+      "[[motion]]\nname = \"roll\"\ntype = \"constant\"\nvelocity = [0.3, 0]\nspin = -20\nstart = 0.5\n"
       "[[inlet]]\ncenter = [1.7, 0.5]\ndirection = [-1, 0]\nwidth = 0.2\nspeed = 0.5\nstart = 0.25\n"
       "[[inlet]]\ncenter = [1.7, 1]\ndirection = [-1, 0]\nwidth = 0.2\ntimes = [0, 1]\nspeeds = [1, 2]\nstop = 2\n"
       "[[outlet]]\nshape = \"box\"\nlow = [1.5, 0]\nhigh = [2, 0.25]\n");
+  const SceneReport report = report_scene(config, config);
   EXPECT_EQ(
-      scene_lines(config, config),
+      report.lines,
       (std::vector<std::string>{
-          "wall        tank: 7 m long, 3 m^2 enclosed, 4 faces, wet inside, moves by sway, narrowest gap 4 dp, to post",
+          "wall        tank: 7 m long, 3 m^2 enclosed, 4 faces, wet inside, moves by sway, narrowest gap 4 dp, to "
+          "post, at (1, 1.4) m",
           "wall        post: 0.628319 m long, 0.0314159 m^2 enclosed, 1 face, wet outside, moves by sway, narrowest "
-          "gap 4 dp, to tank",
-          "wall        plate: 0.4 m long, 2 faces, wet both, moves by sway, narrowest gap 4 dp, to tank",
+          "gap 4 dp, to tank, at (1, 1.4) m",
+          "wall        plate: 0.4 m long, 2 faces of 3 pieces, wet both, moves by sway, narrowest gap 4 dp, to tank, "
+          "at (0.1, 1) m",
+          "motion      sway: constant, t = 0 to 1 s, moves tank, post, plate",
+          "motion      roll: constant, t = 0.5 to 1 s, x from 0 to 0.15 m, angle from -573 to 0 deg, moves no wall",
           "inlet       inlet_1: 0.2 m wide, 4 rows of 4 particles, 0.5 m/s, from t = 0.25 s",
           "inlet       inlet_2: 0.2 m wide, 4 rows of 4 particles, 2 speeds up to 2 m/s, until t = 2 s",
           "outlet      outlet_1: 0.125 m^2"}));
-  EXPECT_EQ(scene_warnings(config, config), std::vector<std::string>{});
+  EXPECT_EQ(report.warnings, std::vector<std::string>{});
 }
 
 TEST(SceneWalls, ANarrowGapIsAWarningWithItsPlace) {
@@ -212,7 +219,7 @@ TEST(SceneWalls, ANarrowGapIsAWarningWithItsPlace) {
                                    "[[wall]]\nname = \"floor\"\nshape = \"polyline\"\npoints = [[-1, 0], [3, "
                                    "0]]\nwet = \"left\"\n[[wall]]\nname = \"body\"\n" +
                                    body);
-    return scene_warnings(config, config);
+    return report_scene(config, config).warnings;
   };
   const auto box = [](const std::string& low) {
     return "shape = \"box\"\nlow = [1.5, " + low + "]\nhigh = [1.6, 0.7]\n";
@@ -225,6 +232,70 @@ TEST(SceneWalls, ANarrowGapIsAWarningWithItsPlace) {
   EXPECT_EQ(warnings(box("-0.1")), std::vector<std::string>{});  // sunk into it
   // Below the floor, which is dry there.
   EXPECT_EQ(warnings("shape = \"box\"\nlow = [1.5, -0.7]\nhigh = [1.6, -0.05]\n"), std::vector<std::string>{});
+}
+
+TEST(SceneWalls, AGapWithinAWallCountsAsOneBetweenTwo) {
+  const auto warnings = [](const std::string& wall) {
+    const Case config =
+        scene_case("domain = {low = [-9, -9], high = [9, 9]}\n" + unit_square + "[[wall]]\nname = \"w\"\n" + wall);
+    return report_scene(config, config).warnings;
+  };
+  const auto polygon = [](const std::string& points) { return "shape = \"polygon\"\npoints = " + points + "\n"; };
+  const auto line = [](const std::string& points) { return "shape = \"polyline\"\npoints = " + points + "\n"; };
+  // A slot, open at its top.
+  const auto slot = [&](const std::string& left, const std::string& right) {
+    return polygon("[[2, 0], [4, 0], [4, 1], [" + right + ", 1], [" + right + ", 0.2], [" + left + ", 0.2], [" + left +
+                   ", 1], [2, 1]]");
+  };
+  expect_mistake(warnings(slot("3", "3.05")), "the gap within the wall \"w\" is 1 dp wide at (3.025, ");
+  EXPECT_EQ(warnings(slot("3", "3.11")), std::vector<std::string>{});
+  EXPECT_EQ(warnings(slot("3", "3.05") + "wet = \"inside\"\n"), std::vector<std::string>{});
+  // A throat between two tips, and one that is closed on all sides.
+  expect_mistake(
+      warnings(polygon("[[2, 0], [4, 0], [4, 1], [3.04, 0.5], [3.5, 0.2], [2.5, 0.2], [2.96, 0.5], [2, 1]]")),
+      "1.6 dp wide at (3, 0.5) m");
+  expect_mistake(warnings("shape = \"box\"\nlow = [2, 0]\nhigh = [4, 0.08]\nwet = \"inside\"\n"), "1.6 dp wide at (");
+  EXPECT_EQ(warnings("shape = \"box\"\nlow = [2, 0]\nhigh = [4, 0.08]\n"), std::vector<std::string>{});
+  // A line that comes back, and the mouth of an arc.
+  expect_mistake(warnings(line("[[2, 0], [3, 0], [3, 1], [2.05, 0.09]]")), "is 1.");
+  expect_mistake(warnings(line("[[2, 0], [3, 0], [3, 0.06], [2, 0.06]]")), "is 1.2 dp wide");
+  EXPECT_EQ(warnings(line("[[2, 0], [3, 0], [3, 0.06], [2, 0.06]]") + "wet = \"right\"\n"), std::vector<std::string>{});
+  const std::string arc = "shape = \"arc\"\ncenter = [3, 0]\nradius = 0.5\nfrom = 5\nto = ";
+  expect_mistake(warnings(arc + "355\n"), "is 1.74 dp wide at (3.4981, 0) m");
+  EXPECT_EQ(warnings(arc + "345\n"), std::vector<std::string>{});
+  // Corners, sharp or blunt, have none, nor has a curve of short pieces.
+  EXPECT_EQ(warnings(line("[[2, 1], [3, 0], [3.1, 1]]")), std::vector<std::string>{});
+  EXPECT_EQ(warnings(line("[[2, 1], [3, 0], [3.03, 0], [4, 1]]")), std::vector<std::string>{});
+  std::string curve = "[[2, 0]";
+  for (int k = 1; k < 200; ++k)
+    curve += ", [" + std::to_string(2.0 + 0.01 * k) + ", " + std::to_string(0.2 * std::sin(0.05 * k)) + "]";
+  EXPECT_EQ(warnings(line(curve + "]")), std::vector<std::string>{});
+}
+
+TEST(SceneWalls, AGapThatOpensInTimeIsToldWithTheTime) {
+  const auto warnings = [](const std::string& body, const std::string& motion) {
+    const Case config =
+        scene_case("domain = {low = [-9, -9], high = [9, 9]}\n" + unit_square +
+                   "[[wall]]\nname = \"flume\"\nshape = \"polyline\"\nwet = \"left\"\npoints = [[-1, 0], "
+                   "[3, 0], [3, 1]]\n[[wall]]\nname = \"body\"\nmotion = \"m\"\n" +
+                   body + "[[motion]]\nname = \"m\"\n" + motion);
+    return report_scene(config, config).warnings;
+  };
+  const std::string piston = "shape = \"polyline\"\npoints = [[0, 0], [0, 1]]\n";
+  const std::string box = "shape = \"box\"\nlow = [1.5, 0.5]\nhigh = [2, 0.8]\n";
+  const auto stroke = [](const std::string& of) {
+    return "type = \"table\"\ntimes = [0, 0.5, 1]\npositions = [[0, 0], " + of + ", [0, 0]]\n";
+  };
+  // Sliding along the floor and touching it are no gaps; coming near is.
+  EXPECT_EQ(warnings(piston, stroke("[0.5, 0]")), std::vector<std::string>{});
+  EXPECT_EQ(warnings("shape = \"box\"\nlow = [1, 0]\nhigh = [1.5, 0.5]\n", stroke("[0.5, 0]")),
+            std::vector<std::string>{});
+  EXPECT_EQ(warnings(box, stroke("[0.5, 0]")), std::vector<std::string>{});
+  expect_mistake(warnings(box, stroke("[0.92, 0]")), "the gap between the walls \"flume\" and \"body\" is 1.6 dp wide");
+  expect_mistake(warnings(box, stroke("[0, -0.45]")), "is 1 dp wide at (");
+  expect_mistake(warnings(box, stroke("[0, -0.45]")), ", 0.025) m at t = 0.5 s; fluid needs 2 dp to pass");
+  // Walls that move as one do not come nearer to each other; a flap on its hinge makes a corner.
+  EXPECT_EQ(warnings(piston, "type = \"harmonic\"\nangle = 80\nfrequency = 1\n"), std::vector<std::string>{});
 }
 
 TEST(SceneWalls, WhatIsWrongWithThemIsTold) {

@@ -52,11 +52,17 @@ std::string number_text(double x);
 /// The text as a TOML basic string.
 std::string in_quotes(std::string_view text);
 
+/// The word of a value of an enumeration.
+template <class Enum>
+constexpr std::string_view word_of(Enum value) {
+  return words(value)[static_cast<std::size_t>(value)];
+}
+
 /// A value as TOML. The words of an enumeration are given by words(Enum), in the order of its values.
 template <class T>
 std::string value_text(const T& value) {
   if constexpr (std::is_enum_v<T>) {
-    return in_quotes(words(value)[static_cast<std::size_t>(value)]);
+    return in_quotes(word_of(value));
   } else if constexpr (std::is_same_v<T, std::string>) {
     return in_quotes(value);
   } else if constexpr (std::is_same_v<T, double>) {

@@ -1,6 +1,7 @@
 #pragma once
 // Shapes in two dimensions: closed outlines with an inside, and open lines without thickness.
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -98,5 +99,11 @@ Outline transformed(const Outline& outline, const Transform<2>& transform);
 
 /// Of outlines one of which is inside the other, too.
 Gap narrowest_gap(const Outline& first, const Outline& second);
+
+/// The narrowest throat between two outlines, or of one with itself, that is wider than `least` [m] and of which
+/// `counts` says so. In a throat they are nearer to each other than at any point beside it, or as near: where two faces
+/// run into a corner is none.
+std::optional<Gap> narrowest_throat(const Outline& first, const Outline& second, double least,
+                                    const std::function<bool(const Gap&)>& counts);
 
 }  // namespace impinge

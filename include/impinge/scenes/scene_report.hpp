@@ -1,5 +1,5 @@
 #pragma once
-// What a scene's walls, inlets and outlets are like, as texts.
+// What a scene's walls, motions, inlets and outlets are like, as texts.
 
 #include <string>
 #include <vector>
@@ -9,12 +9,15 @@
 
 namespace impinge {
 
-/// A line for each wall, inlet and outlet: length, area and faces, the narrowest gap to another wall at the start, what
-/// enters when.
-std::vector<std::string> scene_lines(const MethodSettings& method, const SceneSettings& settings);
+struct SceneReport {
+  /// One for each wall, motion, inlet and outlet: length, area, faces and the narrowest gap of a wall until the run's
+  /// end; how far a motion goes; what enters when.
+  std::vector<std::string> lines;
+  /// What is allowed but may not work: gaps narrower than two particles, each with its place and time.
+  std::vector<std::string> warnings;
+};
 
-/// What is allowed but may not work: gaps between walls, on their wet sides at the start, that are narrower than two
-/// particles. Walls that touch have no gap.
-std::vector<std::string> scene_warnings(const MethodSettings& method, const SceneSettings& settings);
+/// The settings have passed check_scene.
+SceneReport report_scene(const MethodSettings& method, const SceneSettings& settings);
 
 }  // namespace impinge
