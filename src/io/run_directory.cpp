@@ -89,6 +89,10 @@ std::string file_series_path(const std::string& directory, const std::string& na
   return path_of(directory, name + snapshot_ending + ".series");
 }
 
+std::string scene_path(const std::string& directory, const std::string& name) {
+  return path_of(directory, name + "_scene" + snapshot_ending);
+}
+
 std::vector<std::string> list_snapshots(const std::string& directory, const std::string& name) {
   return list_files(directory, name, snapshot_ending);
 }

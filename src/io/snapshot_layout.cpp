@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "impinge/core/petsc.hpp"
+#include "impinge/io/vtkhdf.hpp"
 
 namespace impinge {
 namespace {
@@ -36,18 +37,11 @@ void write_header(Hdf5Writer& file, const SnapshotHeader& header) {
   file.attribute("/", "mpi_version", mpi_version());
 }
 
-/// One vertex cell per particle; one piece per rank.
-void write_cells(Hdf5Writer& file, int count) {
-  std::vector<std::int64_t> places(static_cast<std::size_t>(count) + 1);
-  std::iota(places.begin(), places.end(), std::int64_t{0});
-  const std::vector<std::int64_t> size{count};
-  for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
-    file.dataset(fmt::format("/VTKHDF/{}", name), size);
-  file.dataset("/VTKHDF/Offsets", places);
-  places.pop_back();
-  file.dataset("/VTKHDF/Connectivity", places);
-  constexpr std::uint8_t vtk_vertex = 1;
-  file.dataset("/VTKHDF/Types", std::vector<std::uint8_t>(static_cast<std::size_t>(count), vtk_vertex));
+/// One vertex per particle.
+void write_vertices(Hdf5Writer& file, int count) {
+  std::vector<std::int64_t> begin(static_cast<std::size_t>(count) + 1);
+  std::iota(begin.begin(), begin.end(), std::int64_t{0});
+  write_cells(file, begin, std::vector<std::uint8_t>(static_cast<std::size_t>(count), vtk_vertex));
 }
 
 template <int Dim>
@@ -114,13 +108,11 @@ void StateReader::check_types(std::span<const ParticleType> types) const {
 template <int Dim>
 void write_state(Hdf5Writer& file, int rank, const Particles<Dim>& particles, const SnapshotHeader& header) {
   write_header(file, header);
-  file.create_group("/VTKHDF");
-  file.attribute<std::int64_t>("/VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
-  file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
+  create_grid(file);
   for_fields<Dim>([&](const auto& field) {
     if (is_position(field.name)) write_field(file, particles, field);
   });
-  write_cells(file, particles.owned);
+  write_vertices(file, particles.owned);
   file.create_group("/VTKHDF/PointData");
   for_fields<Dim>([&](const auto& field) {
     if (field.is_saved && !is_position(field.name)) write_field(file, particles, field);

@@ -17,8 +17,14 @@ std::string header(const std::vector<std::string>& columns) {
   return fmt::format("step,t [s],{}", fmt::join(columns, ","));
 }
 
+std::string row(const StepReport& report, const std::string& values) {
+  return fmt::format("{},{:.17g},{}", report.step, report.time, values);
+}
 std::string row(const StepReport& report, const std::vector<double>& values) {
-  return fmt::format("{},{:.17g},{:.9g}", report.step, report.time, fmt::join(values, ","));
+  return row(report, fmt::format("{:.9g}", fmt::join(values, ",")));
+}
+std::string row(const StepReport& report, const std::vector<std::int64_t>& counts) {
+  return row(report, fmt::format("{}", fmt::join(counts, ",")));
 }
 
 }  // namespace
@@ -32,6 +38,7 @@ Observers<Dim>::Observers(MPI_Comm comm, const ObserverSettings& settings, const
       gauges_(settings.gauges, scene, method),
       sections_(comm, settings.sections, scene, method.particles.spacing, particles, report.time),
       forces_(scene),
+      outlets_(scene),
       last_time_(report.time),
       last_step_(report.step) {}
 
@@ -45,6 +52,7 @@ std::vector<TableLine> Observers<Dim>::headers() const {
   add("gauges", gauges_);
   add("sections", sections_);
   add("forces", forces_);
+  add("outlets", outlets_);
   return lines;
 }
 
@@ -77,7 +85,8 @@ TableLine Observers<Dim>::section_row(const StepReport& report) {
 }
 
 template <int Dim>
-std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, const StepReport& report) {
+std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, const std::vector<Outlet<Dim>>& outlets,
+                                               const StepReport& report) {
   if (!sections_.empty()) sections_.count(particles);
   const bool due = is_due(report);
   last_time_ = report.time;
@@ -87,6 +96,7 @@ std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, 
   if (!gauges_.empty()) rows.push_back({"gauges", row(report, gauges_.measure(comm_, particles))});
   if (!sections_.empty()) rows.push_back(section_row(report));
   if (!forces_.empty()) rows.push_back({"forces", row(report, forces_.measure(comm_, particles, report.time))});
+  if (!outlets_.empty()) rows.push_back({"outlets", row(report, outlets_.measure(outlets))});
   return rows;
 }
 

@@ -79,7 +79,7 @@ std::string wall_around(const Scene<Dim>& scene, const Vector<Dim>& point, doubl
 
 void declare_observers(Keys& keys, ObserverSettings& settings) {
   keys.add("output.sample_interval", settings.sampling.interval,
-           "time from one row of probes, gauges, sections and forces to the next; 0: none by time",
+           "time from one row of probes, gauges, sections, forces and outlets to the next; 0: none by time",
            {.unit = "s", .range = not_negative});
   keys.add("output.sample_steps", settings.sampling.steps, "steps from one such row to the next; 0: none by steps",
            {.range = from_to(0, 1e9), .fallback = "1; with output.sample_interval 0"});

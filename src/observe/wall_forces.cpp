@@ -2,20 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "impinge/observe/column.hpp"
 #include "impinge/observe/place.hpp"
 
 namespace impinge {
-namespace {
-
-/// A wall's name as a part of a column's: it has neither commas nor quotes then.
-std::string in_column(std::string name) {
-  for (char& c : name)
-    if (c == ',' || c == '"') c = '_';
-  return name;
-}
-
-}  // namespace
-
 template <int Dim>
 std::vector<std::string> WallForces<Dim>::columns() const {
   std::vector<std::string> columns;

@@ -2,8 +2,10 @@
 """Draws a run.
 
 impinge-plot DIR draws a snapshot in DIR, the last or the one that --step or --time names, and the tables of the run:
-pressure.png, speed.png, surface.png, and history.png, probes.png, gauges.png, sections.png, forces.png where there is
-such a table, into DIR/<case>_figures. In three dimensions it draws a slice.
+pressure.png, speed.png, surface.png, and history.png, probes.png, gauges.png, sections.png, forces.png, outlets.png where
+there is such a table, into DIR/<case>_figures. In three dimensions it draws a slice.
+
+impinge-plot --scene FILE draws the scene that impinge --check has written, <case>_scene.vtkhdf, as <case>_scene.png.
 
 If DIR/validation holds what impinge-validate wrote of a jet, it also draws the jet beside the analytic one:
 pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation; of a wedge or a cup
@@ -430,11 +432,131 @@ class Figures:
         self.save(figure, f"{kind}.png")
 
 
+class SceneFigure:
+    """Draws the scene that impinge --check has written: of three dimensions the particles of a slice, and boxes."""
+
+    LINES = {  # of each item: colour, style and width of its lines, and what it is
+        "domain": ("0.7", "--", 0.8, "bounds"),
+        "damping": ("#e8b84a", "-", 0.8, "damping"),
+        "outlet": ("#c0392b", "-", 1.0, "outlet"),
+        "wall": ("black", "-", 1.8, "wall; ticks: its wet sides"),
+        "path": ("#8e44ad", "-", 1.0, "path of a wall"),
+        "inlet": ("#1e8449", "-", 2.2, "inlet"),
+        "gauge": ("#d35400", "--", 1.2, "gauge"),
+        "section": ("#d35400", ":", 1.6, "section"),
+        "probe": ("#d35400", "x", 1.6, "probe"),
+    }
+    DISCS = {"fluid": ("#b8d4ee", "fluid"), "inlet": ("#8fd0a5", "rows of an inlet"), "wall": ("black", "wall")}
+    AREAS = ("damping", "outlet")
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as file:
+            grid = file["VTKHDF"]
+            pieces = np.stack([grid[f"NumberOf{name}"][:] for name in ("Points", "Cells")], axis=1)
+            offsets, places = grid["Offsets"][:], np.concatenate(([0, 0], pieces.sum(axis=0)))
+            points, cells = grid["Points"][:], {name: grid["CellData"][name][:] for name in ("item", "number", "normal")}
+            words = text(file.attrs["items"]).split("\n")
+            self.names = {word: text(names).split("\n") for word, names in file["names"].attrs.items()}
+            self.case, dimension = text(file.attrs["name"]), int(file.attrs["dimension"])
+            self.spacing = float(file.attrs["spacing"])
+        # Each piece counts its points and cells from 0, and has one offset more than cells.
+        begin, end, first = [], [], 0
+        for k, (_, count) in enumerate(pieces):
+            own = offsets[first : first + count + 1] + pieces[:k, 0].sum()
+            begin.append(own[:-1])
+            end.append(own[1:])
+            first += count + 1
+        self.begin, self.end = np.concatenate(begin), np.concatenate(end)
+        self.item = np.array(words)[cells["item"]]
+        self.number, self.axes = cells["number"], ("x", "z") if dimension == 3 else ("x", "y")
+        seen = [0, 2] if dimension == 3 else [0, 1]
+        self.points, self.normal = points[:, seen], cells["normal"][:, seen]
+        self.is_particle = (self.end - self.begin == 1) & (self.item != "probe")
+        self.slice = ""
+        if dimension == 3 and self.is_particle.any():
+            depth = points[self.begin, 1]
+            middle = 0.5 * (depth[self.is_particle].min() + depth[self.is_particle].max())
+            self.is_particle &= np.abs(depth - middle) <= 0.5 * self.spacing
+            self.slice = f", particles of a slice at y = {middle:.4g} m"
+        shown = [self.points[a:b] for a, b, item, one in zip(self.begin, self.end, self.item, self.is_particle)
+                 if item != "domain" and (one or b - a > 1 or item == "probe")]
+        shown = np.vstack(shown or [self.points])
+        margin = 0.04 * max(np.ptp(shown, axis=0).max(), self.spacing)
+        self.low, self.high = shown.min(axis=0) - margin, shown.max(axis=0) + margin
+        self.tick = 0.012 * (self.high - self.low).max()
+        self.position = self.points[self.begin]
+
+    def draw(self, path):
+        width, height = self.high - self.low
+        figure, axes = plt.subplots(layout="constrained", figsize=(9, min(9, max(2, 7 * height / width)) + 0.8))
+        axes.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]), aspect="equal",
+                 xlabel=f"{self.axes[0]} [m]", ylabel=f"{self.axes[1]} [m]")
+        axes.set_title(f"{self.case}: the scene at the start{self.slice}", fontsize=10)
+        for item, (colour, label) in self.DISCS.items():
+            chosen = self.is_particle & (self.item == item)
+            if chosen.any():
+                draw_particles(axes, self, chosen, 0.6 if item == "wall" else 1.0, facecolors=colour)
+                axes.plot([], [], "o", color=colour, label=label)
+        for item, (colour, style, line_width, label) in self.LINES.items():
+            chosen = np.flatnonzero((self.item == item) & ((self.end - self.begin > 1) | (item == "probe")))
+            if item == "domain" and not self.shows_bounds(chosen):
+                continue
+            for k in chosen:
+                line = self.points[self.begin[k] : self.end[k]]
+                if item in self.AREAS and len(line) > 2:
+                    axes.fill(*line.T, color=colour, alpha=0.2, lw=0)
+                axes.plot(*line.T, style, color=colour, lw=line_width, ms=6, mew=1.5)
+            if chosen.size:
+                axes.plot([], [], style, color=colour, lw=line_width, label=label)
+                self.arrows(axes, item, chosen, colour)
+                self.label(axes, item, chosen, colour)
+        axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=8)
+        figure.savefig(path, bbox_inches="tight")
+        plt.close(figure)
+        print(f"picture     {path}")
+
+    def shows_bounds(self, chosen):
+        """True where an edge of the bounds is in the picture."""
+        corners = np.vstack([self.points[self.begin[k] : self.end[k]] for k in chosen])
+        return np.any(corners.min(axis=0) > self.low) or np.any(corners.max(axis=0) < self.high)
+
+    def arrows(self, axes, item, chosen, colour):
+        """Ticks into the fluid along the walls, and the flow of the inlets."""
+        if item == "wall":
+            ticks, way = [], self.tick  # to the next tick
+            for k in chosen:
+                begin, end = self.points[self.begin[k]], self.points[self.end[k] - 1]
+                length = np.linalg.norm(end - begin)
+                while way <= length:
+                    foot = begin + way / length * (end - begin)
+                    ticks.append((foot, foot + self.tick * self.normal[k]))
+                    way += 2 * self.tick
+                way -= length
+            axes.add_collection(matplotlib.collections.LineCollection(ticks, colors=COMPUTED, linewidths=0.7))
+        if item == "inlet":
+            middle = np.array([self.points[self.begin[k] : self.end[k]].mean(axis=0) for k in chosen])
+            axes.quiver(*middle.T, *self.normal[chosen].T, color=colour, angles="xy", scale=18, width=0.005, zorder=4)
+
+    def label(self, axes, item, chosen, colour):
+        """The name of each element once, at the middle of its longest line."""
+        for number in np.unique(self.number[chosen]):
+            own = [self.points[self.begin[k] : self.end[k]] for k in chosen if self.number[k] == number]
+            if number == 0 or item == "path":
+                continue
+            longest = max(own, key=lambda line: np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+            place = longest[:-1].mean(axis=0) if item in self.AREAS else longest[[0, -1]].mean(axis=0)
+            place = np.clip(place, self.low + 3 * self.tick, self.high - 3 * self.tick)
+            axes.annotate(self.names[item][number - 1], place, xytext=(4, 4), textcoords="offset points", fontsize=7,
+                          color=colour, zorder=5,
+                          bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.6, "linewidth": 0})
+
+
 # Of each table, the panels: prefix and unit of their columns, and what they show.
 TABLES = {
     "probes": [("p_", "Pa", "pressure"), ("ux_", "m/s", "$u_x$"), ("uy_", "m/s", "$u_y$"), ("uz_", "m/s", "$u_z$")],
     "gauges": [("", "m", "level")],
     "sections": [("", "m^2/s", "discharge"), ("total_", "m^2", "total")],
+    "outlets": [("", "1", "particles")],
     "forces": [("fx_", "N/m", "$F_x$"), ("fy_", "N/m", "$F_y$"), ("torque_", "N", "torque")],
 }
 
@@ -466,13 +588,18 @@ def main():
         description="Draws a snapshot and the tables of a run into DIR/<case>_figures, and a jet that impinge-validate "
         "has measured beside the analytic one into DIR/validation.",
     )
-    parser.add_argument("directory", metavar="DIR", type=pathlib.Path, help="output directory of the run")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("directory", metavar="DIR", nargs="?", type=pathlib.Path, help="output directory of the run")
+    what.add_argument("--scene", metavar="FILE", type=pathlib.Path, help="draw what impinge --check has written instead")
     parser.add_argument("--name", help="case, where the directory has several")
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument("--step", type=int, help="step of the snapshot; default: the last")
     chosen.add_argument("--time", type=float, help="time that the snapshot is nearest to [s]")
     arguments = parser.parse_args()
     try:
+        if arguments.scene:
+            SceneFigure(arguments.scene).draw(arguments.scene.with_suffix(".png"))
+            return
         if (arguments.directory / "validation/validation.json").exists():
             run = JetRun(arguments.directory)
             plots = (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks)

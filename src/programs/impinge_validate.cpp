@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/core/mpi.hpp"
+#include "impinge/programs/figures.hpp"
 #include "impinge/validation/validation.hpp"
 
 namespace {
@@ -30,25 +26,6 @@ struct Arguments {
   bool no_figures = false;
 };
 
-/// Runs `impinge-plot DIR`, which stands beside this program. Where Python or its packages are missing, that is told
-/// and no error. Throws FileError.
-void draw(const std::string& directory) {
-  std::string program = (fs::read_symlink("/proc/self/exe").parent_path() / "impinge-plot").string();
-  std::string argument = directory;
-  const std::array<char*, 3> words{program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  const int error = posix_spawn(&child, program.c_str(), nullptr, nullptr, words.data(), environ);
-  if (error == 0 && waitpid(child, &status, 0) == child && status == 0) return;
-  const std::string problem =
-      fmt::format("no figures: {} {}; the report is complete", program, error ? std::strerror(error) : "failed");
-  constexpr int no_packages = 3, no_interpreter = 127;
-  const bool is_missing =
-      error == 0 && WIFEXITED(status) && (WEXITSTATUS(status) == no_packages || WEXITSTATUS(status) == no_interpreter);
-  if (!is_missing) throw FileError(problem);
-  fmt::print(stderr, "impinge-validate: {}\n", problem);
-}
-
 int run_program(const Arguments& arguments) {
   try {
     const std::string folder = (fs::path(arguments.directory) / "validation").string();
@@ -56,7 +33,8 @@ int run_program(const Arguments& arguments) {
     write_report(validation, folder);
     fmt::print("{}\nreport     {}/validation.json\n", to_table(validation), folder);
     std::fflush(stdout);
-    if (!arguments.no_figures) draw(arguments.directory);
+    if (!arguments.no_figures && !draw({arguments.directory}))
+      fmt::print(stderr, "impinge-validate: no figures: impinge-plot failed; the report is complete\n");
     return done;
   } catch (const InputError& error) {
     for (const std::string& mistake : error.mistakes()) fmt::print(stderr, "impinge-validate: {}\n", mistake);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <set>
@@ -19,11 +20,14 @@
 #include "impinge/io/run_directory.hpp"
 #include "impinge/io/snapshot.hpp"
 #include "impinge/io/together.hpp"
+#include "impinge/observe/observer_report.hpp"
 #include "impinge/observe/observers.hpp"
 #include "impinge/parallel/exchange.hpp"
+#include "impinge/programs/figures.hpp"
 #include "impinge/programs/memory_check.hpp"
 #include "impinge/programs/plan.hpp"
 #include "impinge/programs/progress.hpp"
+#include "impinge/programs/scene_file.hpp"
 #include "impinge/programs/schedule.hpp"
 #include "impinge/programs/stop_signals.hpp"
 #include "impinge/scenes/scene_report.hpp"
@@ -57,6 +61,23 @@ void refuse_unused_options(MPI_Comm comm, const std::vector<std::string>& ours) 
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 
+/// Throws InputError on all ranks where the run cannot write its files. Collective.
+void check_output(MPI_Comm comm, const Case& config) {
+  std::vector<std::string> mistakes;
+  if (rank_of(comm) == 0) {
+    try {
+      check_writable(config);
+      const auto& [directory, place, interval] = config.output;
+      if (const std::string reason = try_longest_name(directory, config.name); !reason.empty())
+        mistakes.push_back(fmt::format("{}: output.directory = \"{}\": cannot write a checkpoint of \"{}\" there: {}",
+                                       place, directory, config.name, reason));
+    } catch (const InputError& error) {
+      mistakes = error.mistakes();
+    }
+  }
+  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
+}
+
 /// A line for each region: its volume between the walls, its particles, the error of their volume.
 template <int Dim>
 std::vector<std::string> region_lines(const Case& config) {
@@ -74,9 +95,31 @@ void print_warnings(const SceneReport& report) {
   for (const std::string& text : report.warnings) fmt::print(stderr, "impinge: warning: {}\n", text);
 }
 
+/// Regions, walls, motions, openings and what is observed, a line each, and warnings.
+template <int Dim>
+void print_scene(const Case& config) {
+  const SceneReport report = report_scene(config, config);
+  for (const auto& lines : {region_lines<Dim>(config), report.lines, observer_lines(config, Dim)})
+    for (const std::string& line : lines) fmt::print("{}\n", line);
+  print_warnings(report);
+}
+
+/// Writes the scene for ParaView and draws it. Collective; throws FileError.
+template <int Dim>
+void show_scene(MPI_Comm comm, const Case& config, const Particles<Dim>& particles) {
+  const std::string path = write_scene(comm, config, particles);
+  on_first_rank(comm, [&] {
+    fmt::print("scene       {}\n", path);
+    std::fflush(stdout);
+    remove_file(std::filesystem::path(path).replace_extension(".png").string());  // of another scene
+    if (!draw({"--scene", path})) fmt::print("picture     none\n");
+  });
+}
+
 template <int Dim>
 void check(MPI_Comm comm, const Case& config) {
   check_memory<Dim>(comm, config);
+  check_output(comm, config);
   const auto simulation = make_simulation<Dim>(comm, config);
   refuse_unused_options(comm, simulation.pressure_solver().default_options());
   const StepReport& report = simulation.report();
@@ -90,29 +133,27 @@ void check(MPI_Comm comm, const Case& config) {
   const double imbalance = simulation.imbalance();
   const double free = free_memory(comm);
   const double acceleration = BodyForce<Dim>(config.fluid, 0.0).largest(comm, particles);
-  if (rank_of(comm) > 0) return;
-  const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
-  const double force_dt = config.time.cfl * std::sqrt(config.particles.spacing / acceleration);
-  fmt::print("case        {}, {} dimensions: all keys are in range\n", config.name, config.dimension);
-  fmt::print("particles   {}: {} fluid, {} inlet, {} wall, {} ghost\n", report.particles, counts[0], counts[1],
-             counts[2], counts[3]);
-  fmt::print("ranks       {}, largest over mean work {:.3f}\n", ranks_of(comm), imbalance);
-  fmt::print(
-      "memory      {} ({:.0f} bytes per particle), {} on the fullest rank; preconditioner and libraries come on top; "
-      "{} "
-      "are free for a rank\n",
-      bytes_text(bytes), bytes / static_cast<double>(report.particles), bytes_text(most), bytes_text(free));
-  for (const std::string& line : region_lines<Dim>(config)) fmt::print("{}\n", line);
-  const SceneReport scene = report_scene(config, config);
-  for (const std::string& line : scene.lines) fmt::print("{}\n", line);
-  print_warnings(scene);
-  fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
-  if (std::isfinite(cfl_dt))
-    fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
-  if (std::isfinite(force_dt)) fmt::print(", {:.3g} s (force, {:.3g} m/s^2)", force_dt, acceleration);
-  fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
-             std::ceil(config.time.end / std::min({config.time.dt, cfl_dt, force_dt})), config.time.end);
-  fmt::print("output      {}\n", config.output.directory);
+  if (rank_of(comm) == 0) {
+    const double cfl_dt = config.time.cfl * config.particles.spacing / report.max_speed;
+    const double force_dt = config.time.cfl * std::sqrt(config.particles.spacing / acceleration);
+    fmt::print("case        {}, {} dimensions: all keys are in range\n", config.name, config.dimension);
+    fmt::print("particles   {}: {} fluid, {} inlet, {} wall, {} ghost\n", report.particles, counts[0], counts[1],
+               counts[2], counts[3]);
+    fmt::print("ranks       {}, largest over mean work {:.3f}\n", ranks_of(comm), imbalance);
+    fmt::print(
+        "memory      {} ({:.0f} bytes per particle), {} on the fullest rank; preconditioner and libraries come on top; "
+        "{} are free for a rank\n",
+        bytes_text(bytes), bytes / static_cast<double>(report.particles), bytes_text(most), bytes_text(free));
+    print_scene<Dim>(config);
+    fmt::print("dt          at most {:.3g} s (time.dt)", config.time.dt);
+    if (std::isfinite(cfl_dt))
+      fmt::print(", {:.3g} s (CFL {} at the initial {:.3g} m/s)", cfl_dt, config.time.cfl, report.max_speed);
+    if (std::isfinite(force_dt)) fmt::print(", {:.3g} s (force, {:.3g} m/s^2)", force_dt, acceleration);
+    fmt::print("\nsteps       at least {:.0f} to t = {} s\n",
+               std::ceil(config.time.end / std::min({config.time.dt, cfl_dt, force_dt})), config.time.end);
+    fmt::print("output      {}\n", config.output.directory);
+  }
+  show_scene(comm, config, particles);
 }
 
 /// Mean and largest over the ranks of a number that use(rank plan) gives.
@@ -252,7 +293,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observe
       throw;
     }
     output.record(report, seconds_since(step_start));
-    output.record(observers.observe(simulation.particles(), report));
+    output.record(observers.observe(simulation.particles(), simulation.outlets(), report));
     if (!options_checked && (report.pressure.iterations > 0 || finished())) {
       refuse_unused_options(comm, simulation.pressure_solver().default_options());
       options_checked = true;
@@ -283,23 +324,6 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observe
   for (const Outlet<Dim>& outlet : simulation.outlets())
     if (first && outlet.region) fmt::print("outlet {}: {} particles\n", outlet.name, outlet.out);
   return true;
-}
-
-/// Throws InputError on all ranks where the run cannot write its files. Collective.
-void check_output(MPI_Comm comm, const Case& config) {
-  std::vector<std::string> mistakes;
-  if (rank_of(comm) == 0) {
-    try {
-      check_writable(config);
-      const auto& [directory, place, interval] = config.output;
-      if (const std::string reason = try_longest_name(directory, config.name); !reason.empty())
-        mistakes.push_back(fmt::format("{}: output.directory = \"{}\": cannot write a checkpoint of \"{}\" there: {}",
-                                       place, directory, config.name, reason));
-    } catch (const InputError& error) {
-      mistakes = error.mistakes();
-    }
-  }
-  if (any_rank(comm, !mistakes.empty())) throw InputError(mistakes);
 }
 
 RunFiles files_of(const Case& config) { return {config.output.directory, config.name, config.resolved_text}; }

@@ -27,7 +27,7 @@ struct ObservedRun {
 
   std::vector<TableLine> step() {
     simulation.step();
-    return observers.observe(simulation.particles(), simulation.report());
+    return observers.observe(simulation.particles(), simulation.outlets(), simulation.report());
   }
 };
 

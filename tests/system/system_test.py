@@ -59,13 +59,15 @@ class CommandLine(System):
             (["--help"], "CASE.toml"),
             (["--version"], "impinge "),
             (["--describe"], "particles.spacing"),
-            ([QUICK, "--check"], "bytes per particle"),
             ([QUICK, "--plan", "16"], "planned for 16 ranks"),
         ):
             done = impinge(*words, cwd=self.directory)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn(part, done.stdout)
         self.assertEqual(list(self.directory.iterdir()), [])
+        done = impinge(QUICK, "--check", cwd=self.directory)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("bytes per particle", done.stdout)
 
     def test_wrong_input_is_exit_2_with_file_and_line(self):
         for text, message in (
@@ -125,10 +127,10 @@ class CommandLine(System):
         done = impinge("nowhere.toml", ranks=2)
         self.assertEqual(done.returncode, 2)
         self.assertIn("nowhere.toml", done.stderr)
-        done = impinge(QUICK, "-ppe_pc_tpye", "jacobi", "--check", ranks=2)
+        done = impinge(QUICK, "-ppe_pc_tpye", "jacobi", "--check", cwd=self.directory, ranks=2)
         self.assertEqual(done.returncode, 2)
         self.assertIn("-ppe_pc_tpye", done.stderr)
-        done = impinge(QUICK, "-ppe_pc_type", "nonsense", "--check")
+        done = impinge(QUICK, "-ppe_pc_type", "nonsense", "--check", cwd=self.directory)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("nonsense", done.stderr)
 
@@ -155,7 +157,7 @@ class CommandLine(System):
 
     def test_texts_need_no_working_mpi(self):
         broken = {**os.environ, "OMPI_MCA_pml": "none"}
-        self.assertNotEqual(call(BIN / "impinge", QUICK, "--check", environment=broken).returncode, 0)
+        self.assertNotEqual(call(BIN / "impinge", QUICK, "--check", cwd=self.directory, environment=broken).returncode, 0)
         for word in ("--help", "--version", "--describe"):
             done = call(BIN / "impinge", word, environment=broken)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -175,7 +177,7 @@ class CommandLine(System):
         self.assertFalse((self.directory / "out").exists())
         for variables in ({"PMI_SIZE": "1", "PMI_RANK": "0"}, {"SLURM_NTASKS": "8", "SLURM_PROCID": "0"},
                           {"PMI_SIZE": "x"}):
-            done = call(BIN / "impinge", QUICK, "--check", environment={**os.environ, **variables})
+            done = call(BIN / "impinge", QUICK, "--check", cwd=self.directory, environment={**os.environ, **variables})
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_petsc_options_with_two_dashes_are_told(self):
@@ -187,10 +189,10 @@ class CommandLine(System):
 
     def test_petsc_options_of_other_programs_are_told(self):
         environment = {**os.environ, "PETSC_OPTIONS": "-snes_monitor"}
-        done = call(BIN / "impinge", QUICK, "--check", environment=environment)
+        done = call(BIN / "impinge", QUICK, "--check", cwd=self.directory, environment=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("PETSC_OPTIONS or .petscrc: -snes_monitor\n", done.stdout)
-        done = call(BIN / "impinge", QUICK, "--check", "-snes_monitor", environment=environment)
+        done = call(BIN / "impinge", QUICK, "--check", "-snes_monitor", cwd=self.directory, environment=environment)
         self.assertEqual(done.returncode, 2)
 
     def test_an_earlier_run_is_kept(self):
@@ -211,6 +213,189 @@ class CommandLine(System):
         # A third run at the same second finds another name.
         self.assertEqual(impinge(*words, cwd=self.directory).returncode, 0)
         self.assertEqual(len(list(out.glob("short_before_*"))), 2)
+
+
+SCENE = """geometry = "scene"
+particles.spacing = 0.05
+fluid.gravity = [0, -9.81]
+time = {end = 0.3, dt = 2e-3}
+domain = {low = [-2, -2], high = [4, 3]}
+[[fluid.region]]
+name = "water"
+shape = "box"
+low = [0, 0]
+high = [2, 0.5]
+[[wall]]
+name = "flume"
+shape = "polyline"
+points = [[-0.5, 0], [2, 0], [2, 1]]
+wet = "left"
+[[wall]]
+name = "piston"
+shape = "polyline"
+points = [[0, 0], [0, 1]]
+motion = "stroke"
+[[wall]]
+name = "post"
+shape = "circle"
+center = [1.5, 0.6]
+radius = 0.1
+[[motion]]
+name = "stroke"
+type = "harmonic"
+amplitude = [0.1, 0]
+frequency = 1
+[[inlet]]
+name = "nozzle"
+center = [0.5, 0.8]
+direction = [1, 0]
+width = 0.2
+speed = 2
+[[outlet]]
+name = "drain, left"
+shape = "box"
+low = [0.9, 0]
+high = [1.1, 0.2]
+[[outlet]]
+name = "far"
+shape = "circle"
+center = [3, 0]
+radius = 0.3
+[[probe]]
+name = "rider"
+wall = "piston"
+position = [0, 0.2]
+[[gauge]]
+point = [1, 0]
+length = 0.8
+[[section]]
+name = "gate"
+begin = [0.5, 0]
+end = [0.5, 1]
+[[damping]]
+low = [1.6, 0]
+high = [2, 1]
+strength = 1
+"""
+
+
+class Check(System):
+    def setUp(self):
+        super().setUp()
+        self.path = self.directory / "flume.toml"
+        self.path.write_text(SCENE)
+        self.out = self.directory / "output/flume"
+
+    def scene(self):
+        with h5py.File(self.out / "flume_scene.vtkhdf") as file:
+            words = file.attrs["items"].decode().split("\n")
+            names = {item: text.decode().split("\n") for item, text in file["names"].attrs.items()}
+            return np.array(words)[file["VTKHDF/CellData/item"][:]], names
+
+    def test_tells_and_shows_the_scene_on_any_number_of_ranks(self):
+        texts = []
+        for ranks in (0, 3):
+            done = impinge(self.path, "--check", cwd=self.directory, ranks=ranks)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            texts.append([line for line in done.stdout.splitlines() if not line.startswith(("ranks", "memory"))])
+            self.assertEqual(sorted(file.name for file in self.out.iterdir()), ["flume_scene.png", "flume_scene.vtkhdf"])
+            self.assertEqual((self.out / "flume_scene.png").read_bytes()[:4], b"\x89PNG")
+            self.assertGreater((self.out / "flume_scene.png").stat().st_size, 20000)
+            items, names = self.scene()
+            counted = {item: int(np.sum(items == item)) for item in set(items)}
+            # Two sides of the piston; a circle in pieces of five degrees; 4 rows of 4 particles and the inlet's line;
+            # two ends of the piston with a path each.
+            self.assertEqual(counted, {"fluid": counted["fluid"], "wall": 2 + 2 + 72, "inlet": 16 + 1, "outlet": 2,
+                                       "probe": 1, "gauge": 1, "section": 1, "damping": 1, "path": 2, "domain": 1})
+            self.assertEqual(names["wall"], ["flume", "piston", "post"])
+            self.assertEqual(names["outlet"], ["drain, left", "far"])
+            reader = vtkHDFReader()
+            reader.SetFileName(str(self.out / "flume_scene.vtkhdf"))
+            reader.Update()
+            grid = reader.GetOutput()
+            self.assertEqual(grid.GetNumberOfCells(), len(items))
+            self.assertEqual(grid.GetBounds(), (-2, 4, -2, 3, 0, 0))
+            particles = next(line for line in done.stdout.splitlines() if line.startswith("particles"))
+            self.assertIn(f": {counted['fluid']} fluid, 16 inlet, ", particles)
+        self.assertEqual(texts[0], texts[1])
+        for line in ("wall        piston: 1 m long, 1 face, wet both, moves by stroke, ",
+                     "motion      stroke: harmonic, t = 0 to 0.3 s, x from 0 to 0.1 m, moves piston",
+                     "outlet      far: 0.282743 m^2", "probe       rider: at (0, 0.2) m, rides on piston",
+                     "gauge       gauge_1: from (1, 0) m on 0.8 m along (0, 1)",
+                     "section     gate: from (0.5, 0) to (0.5, 1) m", "scene       output/flume/flume_scene.vtkhdf",
+                     "picture     output/flume/flume_scene.png"):
+            self.assertTrue(any(told.startswith(line) for told in texts[0]), f"{line}: {texts[0]}")
+        self.assertTrue(any(told.startswith("fluid       water: 1 m^2, ") and " particles, their volume " in told
+                            for told in texts[0]))
+
+    def test_a_narrow_gap_is_a_warning(self):
+        done = impinge(self.path, "--set", "wall[3].center=[1.84,0.6]", "--check", cwd=self.directory)
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r'^impinge: warning: the gap between the walls "flume" and "post" is 1.2 dp wide at '
+                                      r"\(1.97, 0.6\) m; fluid needs 2 dp to pass\n$")
+
+    def test_shows_a_scene_in_space(self):
+        done = impinge(ROOT / "input/hydrostatic-3d.toml", "--check", cwd=self.directory, ranks=2)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.out = self.directory / "output/hydrostatic-3d"
+        shutil.copy(self.out / "hydrostatic-3d_scene.vtkhdf", self.out / "flume_scene.vtkhdf")
+        items, _ = self.scene()
+        self.assertEqual(np.sum(items == "domain"), 12)
+        self.assertEqual(np.sum(items == "fluid"), 1000)
+
+    def test_leaves_a_run_as_it_is(self):
+        quick = ["--set", "time.end=4e-3"]
+        self.assertEqual(impinge(self.path, *quick, cwd=self.directory).returncode, 0)
+        (self.out / "flume.lock").write_text("other 1\n")  # as if a run were under way
+        files = {file.name: file.read_bytes() for file in self.out.iterdir()}
+        done = impinge(self.path, "--check", cwd=self.directory, ranks=2)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for name, content in files.items():
+            self.assertEqual((self.out / name).read_bytes(), content, name)
+        self.assertEqual({file.name for file in self.out.iterdir()} - set(files), {"flume_scene.png", "flume_scene.vtkhdf"})
+        # It stays with the case when a run is set aside, and is no snapshot.
+        (self.out / "flume.lock").unlink()
+        self.assertEqual(impinge(self.path, *quick, cwd=self.directory).returncode, 0)
+        self.assertTrue((self.out / "flume_scene.png").exists())
+        self.assertEqual(call(BIN / "impinge-plot", self.out).returncode, 0)
+
+    def test_needs_no_python_packages(self):
+        self.assertEqual(impinge(self.path, "--check", cwd=self.directory).returncode, 0)
+        packages = self.directory / "packages"
+        packages.mkdir()
+        (packages / "matplotlib.py").write_text("raise ImportError('no matplotlib')")
+        done = call(BIN / "impinge", self.path, "--check", cwd=self.directory,
+                    environment={**os.environ, "PYTHONPATH": str(packages)})
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r"^impinge-plot: no matplotlib; .*\n$")
+        self.assertIn("picture     none\n", done.stdout)
+        self.assertEqual([file.name for file in self.out.iterdir()], ["flume_scene.vtkhdf"])
+
+    def test_refuses_a_directory_that_a_run_cannot_write_to(self):
+        done = impinge(self.path, "--check", "--set", "output.directory=/proc/nowhere", ranks=2)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot write there", done.stderr)
+
+    def test_each_outlet_has_its_count_over_restarts(self):
+        words = ["--set", "checkpoint.steps=50", "--set", "output.sample_steps=10", "--set", "time.end=0.2"]
+        self.assertEqual(impinge(self.path, *words, cwd=self.directory, ranks=2).returncode, 0)
+        table = self.out / "flume_outlets.csv"
+        whole = table.read_text()
+        self.assertEqual(whole.splitlines()[0], "step,t [s],drain_ left [1],far [1]")
+        last = whole.splitlines()[-1].split(",")
+        with open(self.out / "flume_history.csv", encoding="utf-8") as file:
+            history = list(csv.DictReader(file))[-1]
+        self.assertEqual(int(last[2]) + int(last[3]), int(history["out"]))
+        self.assertEqual(int(history["in"]) - int(history["out"]) - int(history["lost"]), int(history["fluid"]))
+        self.assertGreater(int(last[2]), 10)
+        checkpoints = sorted(self.out.glob("*.checkpoint"))
+        checkpoints[-1].unlink()
+        done = impinge("--restart", self.out, cwd=self.directory, ranks=2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(table.read_text(), whole)
+        self.assertIn(f"outlet drain, left: {last[2]} particles\n", done.stdout)
+        self.assertEqual(call(BIN / "impinge-plot", self.out).returncode, 0)
+        self.assertTrue((self.out / "flume_figures/outlets.png").exists())
 
 
 class Run(System):

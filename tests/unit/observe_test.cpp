@@ -285,7 +285,7 @@ std::vector<std::int64_t> sampled(double interval, int steps) {
   std::vector<std::int64_t> found;
   for (report.step = 1; report.step <= 20; ++report.step) {
     report.time += 0.01;
-    for (const TableLine& row : observers.observe(particles, report)) found.push_back(std::stoll(row.text));
+    for (const TableLine& row : observers.observe(particles, {}, report)) found.push_back(std::stoll(row.text));
     if (report.step == 7) observers = start();
   }
   return found;
@@ -319,10 +319,10 @@ TEST(Observers, SectionsGoOnFromTheirLastRow) {
   EXPECT_TRUE(observers.rows_for_restart(report).empty());  // the file has it
   report.step = 6;
   report.time = 1.0;
-  EXPECT_EQ(observers.observe(particles, report)[0].text, "6,1,0,0.25");
+  EXPECT_EQ(observers.observe(particles, {}, report)[0].text, "6,1,0,0.25");
   report.step = 7;
   report.time = 2.0;
-  EXPECT_TRUE(observers.observe(particles, report).empty());
+  EXPECT_TRUE(observers.observe(particles, {}, report).empty());
   EXPECT_EQ(observers.rows_for_restart(report)[0].text, "7,2,0,0.25");
 }
 

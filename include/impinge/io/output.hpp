@@ -24,7 +24,7 @@ namespace impinge {
 ///   <name>.xmf             XDMF, the snapshots as a time series
 ///   <name>.vtkhdf.series   ParaView's file series, the same
 ///   <name>_history.csv     one row per step
-///   <name>_probes.csv, _gauges.csv, _sections.csv, _forces.csv  what is observed
+///   <name>_probes.csv, _gauges.csv, _sections.csv, _forces.csv, _outlets.csv  what is observed
 ///   <name>_<step>.checkpoint  the last two checkpoints
 ///   <name>.lock            who writes them, while the run lasts
 /// A new run moves the files of an earlier one of the same name into a folder of their own; a restarted one removes

@@ -24,7 +24,7 @@ std::string snapshot_path(const std::string& directory, const std::string& name,
 std::string checkpoint_path(const std::string& directory, const std::string& name, std::int64_t step);
 
 /// Every kind of table: the history, and what is observed.
-inline constexpr std::array table_kinds{"history", "probes", "gauges", "sections", "forces"};
+inline constexpr std::array table_kinds{"history", "probes", "gauges", "sections", "forces", "outlets"};
 
 /// `<directory>/<name>_<kind>.csv`.
 std::string table_path(const std::string& directory, const std::string& name, const std::string& kind);
@@ -37,6 +37,9 @@ std::string series_path(const std::string& directory, const std::string& name);
 
 /// `<directory>/<name>.vtkhdf.series`.
 std::string file_series_path(const std::string& directory, const std::string& name);
+
+/// `<directory>/<name>_scene.vtkhdf`: the scene that --check draws. It is of the case, not of a run.
+std::string scene_path(const std::string& directory, const std::string& name);
 
 /// Snapshots in a directory, ordered by step: those of the case `name`, or all if it is empty. Throws FileError where
 /// the directory cannot be read.

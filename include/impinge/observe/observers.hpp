@@ -1,5 +1,5 @@
 #pragma once
-// All that a run measures into tables of its own: probes, gauges, sections, forces on walls.
+// All that a run measures into tables of its own: probes, gauges, sections, forces on walls, counts of outlets.
 
 #include <mpi.h>
 
@@ -8,6 +8,7 @@
 
 #include "impinge/method/step_report.hpp"
 #include "impinge/observe/gauges.hpp"
+#include "impinge/observe/outlet_counts.hpp"
 #include "impinge/observe/probes.hpp"
 #include "impinge/observe/sections.hpp"
 #include "impinge/observe/wall_forces.hpp"
@@ -34,8 +35,10 @@ class Observers {
   /// that is none of it.
   void go_on(const std::string& last_row);
 
-  /// To be called after each step. Gives the rows that are due, the same on all ranks. Collective.
-  std::vector<TableLine> observe(const Particles<Dim>& particles, const StepReport& report);
+  /// To be called after each step. `outlets`: as they have counted. Gives the rows that are due, the same on all ranks.
+  /// Collective.
+  std::vector<TableLine> observe(const Particles<Dim>& particles, const std::vector<Outlet<Dim>>& outlets,
+                                 const StepReport& report);
 
   /// What a restart needs: the row of the sections after a step that had none. Collective.
   std::vector<TableLine> rows_for_restart(const StepReport& report);
@@ -50,6 +53,7 @@ class Observers {
   Gauges<Dim> gauges_;
   Sections<Dim> sections_;
   WallForces<Dim> forces_;
+  OutletCounts<Dim> outlets_;
   double last_time_;        // of the step before [s]
   std::int64_t last_step_;  // of the sections' last row
 };

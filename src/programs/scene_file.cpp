@@ -1,0 +1,238 @@
+#include "impinge/programs/scene_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "impinge/core/mpi.hpp"
+#include "impinge/io/run_directory.hpp"
+#include "impinge/io/snapshot_layout.hpp"
+#include "impinge/io/vtkhdf.hpp"
+#include "impinge/observe/place.hpp"
+#include "impinge/scenes/scenes.hpp"
+#include "impinge/scenes/wet_space.hpp"
+
+namespace impinge {
+namespace {
+
+/// Cells with their data, as the file has them.
+template <int Dim>
+struct Cells {
+  std::vector<Vector<Dim>> points;
+  std::vector<std::int64_t> begin{0};
+  std::vector<std::uint8_t> types, items;
+  std::vector<std::int32_t> numbers;
+  std::vector<Vector<Dim>> normals;
+
+  /// A vertex, or a line through several points.
+  void add(SceneItem item, std::size_t number, const std::vector<Vector<Dim>>& places, const Vector<Dim>& normal = {}) {
+    points.insert(points.end(), places.begin(), places.end());
+    begin.push_back(static_cast<std::int64_t>(points.size()));
+    types.push_back(places.size() == 1 ? vtk_vertex : vtk_poly_line);
+    items.push_back(static_cast<std::uint8_t>(item));
+    numbers.push_back(static_cast<std::int32_t>(number));
+    normals.push_back(normal);
+  }
+};
+
+/// The corner of a box that the bits of k name.
+template <int Dim>
+Vector<Dim> corner_of(const Box<Dim>& box, std::size_t k) {
+  Vector<Dim> corner;
+  for (int axis = 0; axis < Dim; ++axis) corner[axis] = (k >> axis) & 1 ? box.high[axis] : box.low[axis];
+  return corner;
+}
+
+/// The edges of a box; in two dimensions as one closed line.
+template <int Dim>
+void add_box(SceneItem item, std::size_t number, const Box<Dim>& box, Cells<Dim>& cells,
+             const Vector<Dim>& normal = {}) {
+  if constexpr (Dim == 2) {
+    std::vector<Vector<2>> line;
+    for (const std::size_t k : {0u, 1u, 3u, 2u, 0u}) line.push_back(corner_of(box, k));
+    cells.add(item, number, line, normal);
+  } else {
+    for (std::size_t k = 0; k < 8; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (const std::size_t next = k | (std::size_t{1} << axis); next != k)
+          cells.add(item, number, {corner_of(box, k), corner_of(box, next)}, normal);
+  }
+}
+
+/// Calls use(begin, end, normal to the right) for the straight pieces that stand for an edge.
+template <class Use>
+void for_pieces(const OutlineEdge& edge, Use&& use) {
+  constexpr double longest = 5.0 * std::numbers::pi / 180.0;  // of an arc [rad]
+  const int count = edge.straight() ? 1 : static_cast<int>(std::ceil(std::abs(edge.sweep) / longest));
+  for (int k = 0; k < count; ++k)
+    use(edge.at(static_cast<double>(k) / count), edge.at((k + 1.0) / count), edge.normal((k + 0.5) / count));
+}
+
+/// The line of an outline, closed if the outline is.
+std::vector<Vector<2>> line_of(const Outline& outline) {
+  std::vector<Vector<2>> line{outline.edges().front().begin};
+  for (const OutlineEdge& edge : outline.edges())
+    for_pieces(edge, [&](const Vector<2>&, const Vector<2>& end, const Vector<2>&) { line.push_back(end); });
+  return line;
+}
+
+void add_walls(const std::vector<Wall>& walls, Cells<2>& cells) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const Outline outline = outline_at(walls[w], 0.0);
+    for (const OutlineEdge& edge : outline.edges()) {
+      for_pieces(edge, [&](const Vector<2>& begin, const Vector<2>& end, const Vector<2>& normal) {
+        if (walls[w].wet_right) cells.add(SceneItem::wall, w + 1, {begin, end}, normal);
+        if (walls[w].wet_left) cells.add(SceneItem::wall, w + 1, {begin, end}, -1.0 * normal);
+      });
+    }
+  }
+}
+
+void add_paths(const Case& config, const std::vector<Wall>& walls, Cells<2>& cells) {
+  constexpr std::size_t most_points = 8, most_times = 400;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const MotionEntry* entry = motion_named(config.scene_walls[w].motion, config.motions);
+    if (!entry) continue;
+    const std::vector<double> times = times_of(*entry, config.time.end, most_times);
+    const auto& edges = walls[w].outline.edges();
+    std::vector<Vector<2>> corners{edges.back().end};
+    for (std::size_t k = walls[w].outline.closed() ? 1 : 0; k < edges.size(); ++k) corners.push_back(edges[k].begin);
+    const std::size_t stride = (corners.size() + most_points - 1) / most_points;
+    for (std::size_t k = 0; k < corners.size(); k += stride) {
+      std::vector<Vector<2>> path;
+      for (const double time : times) path.push_back((*walls[w].motion)(time).of_position(corners[k]));
+      cells.add(SceneItem::path, w + 1, path);
+    }
+  }
+}
+
+void add_inlets(const Scene<2>& scene, double spacing, Cells<2>& cells) {
+  for (std::size_t k = 0; k < scene.inlets.size(); ++k) {
+    const Inlet<2>& inlet = scene.inlets[k];
+    const auto [low, high] = std::ranges::minmax(inlet.section, {}, [](const auto& x) { return x[0]; });
+    const auto count = static_cast<double>(inlet.section.size());
+    const double half = 0.5 * (count > 1.0 ? (high[0] - low[0]) / (count - 1.0) : spacing);  // of a particle
+    cells.add(SceneItem::inlet, k + 1, {inlet.at(0.0, {low[0] - half}), inlet.at(0.0, {high[0] + half})},
+              inlet.direction);
+  }
+}
+
+template <int Dim>
+void add_outlets(const std::vector<OutletEntry>& outlets, Cells<Dim>& cells) {
+  std::vector<std::string> mistakes;
+  for (std::size_t k = 0; k < outlets.size(); ++k) {
+    if constexpr (Dim == 2) {
+      if (const auto outline = outline_of(outlets[k], mistakes)) cells.add(SceneItem::outlet, k + 1, line_of(*outline));
+    } else if (const auto shape = scaled_shape<3>(outlets[k], mistakes)) {
+      const Transform<3> placement = placement_of<3>(outlets[k]);
+      const Box<3> box = shape->bounds();
+      add_box(SceneItem::outlet, k + 1, {placement(box.low), placement(box.high)}, cells);
+    }
+  }
+}
+
+template <int Dim>
+void add_observers(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cells) {
+  for (std::size_t k = 0; k < config.probes.size(); ++k) {
+    const ProbeSettings& probe = config.probes[k];
+    auto position = vector_of<Dim>(probe.position);
+    if constexpr (Dim == 2) {
+      const auto wall = std::ranges::find(scene.walls, probe.wall, &Wall::name);
+      if (wall != scene.walls.end())
+        position =
+            poses_of(scene.walls, 0.0)[static_cast<std::size_t>(wall - scene.walls.begin())].of_position(position);
+    }
+    cells.add(SceneItem::probe, k + 1, {position});
+  }
+  for (std::size_t k = 0; k < config.gauges.size(); ++k) {
+    const GaugeSettings& gauge = config.gauges[k];
+    const auto point = vector_of<Dim>(gauge.point), direction = vector_of<Dim>(gauge.direction);
+    cells.add(SceneItem::gauge, k + 1, {point, point + gauge.length / norm(direction) * direction});
+  }
+  for (std::size_t k = 0; k < config.sections.size(); ++k)
+    cells.add(SceneItem::section, k + 1,
+              {vector_of<Dim>(config.sections[k].begin), vector_of<Dim>(config.sections[k].end)});
+}
+
+template <int Dim>
+void add_lines(const Case& config, Cells<Dim>& cells) {
+  const Scene<Dim> scene = make_scene<Dim>(config, config);
+  if constexpr (Dim == 2) {
+    add_walls(scene.walls, cells);
+    add_paths(config, scene.walls, cells);
+    add_inlets(scene, config.particles.spacing, cells);
+  }
+  add_outlets(config.outlets, cells);
+  add_observers(config, scene, cells);
+  for (std::size_t k = 0; k < config.damping.size(); ++k)
+    add_box(SceneItem::damping, k + 1, {vector_of<Dim>(config.damping[k].low), vector_of<Dim>(config.damping[k].high)},
+            cells, vector_of<Dim>(config.damping[k].direction));
+  add_box(SceneItem::domain, 0, scene.bounds, cells);
+}
+
+/// Fluid, rows of inlets, and walls that have no lines.
+template <int Dim>
+void add_particles(const Case& config, std::int64_t count, const Particles<Dim>& particles, Cells<Dim>& cells) {
+  constexpr std::int64_t most = 1'000'000;
+  const std::int64_t stride = (count + most - 1) / most;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+    if (particles.id[i] % stride != 0) continue;
+    const ParticleType type = particles.type[i];
+    if (type == ParticleType::fluid) cells.add(SceneItem::fluid, 0, {particles.position[i]});
+    if (type == ParticleType::inlet) cells.add(SceneItem::inlet, 0, {particles.position[i]});
+    if (type == ParticleType::wall && config.scene_walls.empty())
+      cells.add(SceneItem::wall, 0, {particles.position[i]});
+  }
+}
+
+template <class Entry>
+void write_names(Hdf5Writer& file, SceneItem item, const std::vector<Entry>& entries) {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  file.attribute("/names", std::string(word_of(item)).c_str(), fmt::format("{}", fmt::join(names, "\n")));
+}
+
+}  // namespace
+
+template <int Dim>
+std::string write_scene(MPI_Comm comm, const Case& config, const Particles<Dim>& particles) {
+  Cells<Dim> cells;
+  if (rank_of(comm) == 0) add_lines(config, cells);
+  add_particles(config, sum_over_ranks(comm, static_cast<std::int64_t>(particles.owned)), particles, cells);
+
+  const std::string path = scene_path(config.output.directory, config.name);
+  Hdf5Writer file(comm, path);
+  file.attribute("/", "dimension", Dim);
+  file.attribute("/", "spacing", config.particles.spacing);
+  file.attribute("/", "name", config.name);
+  file.attribute("/", "case", config.resolved_text);
+  file.attribute("/", "code_version", std::string("impinge " IMPINGE_VERSION));
+  file.attribute("/", "items", fmt::format("{}", fmt::join(words(SceneItem{}), "\n")));
+  file.create_group("/names");
+  write_names(file, SceneItem::wall, config.scene_walls);
+  write_names(file, SceneItem::inlet, config.inlets);
+  write_names(file, SceneItem::outlet, config.outlets);
+  write_names(file, SceneItem::probe, config.probes);
+  write_names(file, SceneItem::gauge, config.gauges);
+  write_names(file, SceneItem::section, config.sections);
+  write_names(file, SceneItem::damping, config.damping);
+  create_grid(file);
+  file.dataset(points_path, to_numbers(cells.points, static_cast<int>(cells.points.size())), 3, "m");
+  write_cells(file, cells.begin, cells.types);
+  file.create_group("/VTKHDF/CellData");
+  file.dataset("/VTKHDF/CellData/item", cells.items, 0, "1");
+  file.dataset("/VTKHDF/CellData/number", cells.numbers, 0, "1");
+  file.dataset("/VTKHDF/CellData/normal", to_numbers(cells.normals, static_cast<int>(cells.normals.size())), 3, "1");
+  file.finish();
+  return path;
+}
+
+template std::string write_scene(MPI_Comm, const Case&, const Particles<2>&);
+template std::string write_scene(MPI_Comm, const Case&, const Particles<3>&);
+
+}  // namespace impinge
