@@ -8,6 +8,7 @@
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/observe/fluid_value.hpp"
+#include "impinge/observe/observer_report.hpp"
 #include "impinge/observe/observers.hpp"
 
 namespace impinge {
@@ -372,6 +373,30 @@ end = [1, 1]
   EXPECT_EQ(config.sampling.steps, 1);
   EXPECT_EQ(parse("output.sample_interval = 0.1").sampling.steps, 0);
   EXPECT_EQ(parse_case({{"case.toml", config.resolved_text}}).resolved_text, config.resolved_text);
+}
+
+TEST(ObserverKeys, AreTold) {
+  const Case config = parse(R"([[probe]]
+position = [1, 0]
+[[probe]]
+name = "sensor"
+position = [0, 0.1]
+diameter = 0.05
+normal = [1, 0]
+[[gauge]]
+name = "side"
+point = [0, 0.2]
+direction = [1, 0]
+length = 1
+[[section]]
+begin = [1, 0]
+end = [1, 1]
+)");
+  EXPECT_EQ(observer_lines(config, 2),
+            (Texts{"probe       probe_1: at (1, 0) m",
+                   "probe       sensor: at (0, 0.1) m, a face of 0.05 m that looks along (1, 0)",
+                   "gauge       side: from (0, 0.2) m on 1 m along (1, 0)",
+                   "section     section_1: from (1, 0) to (1, 1) m"}));
 }
 
 TEST(ObserverKeys, EachMistakeIsToldAtOnce) {

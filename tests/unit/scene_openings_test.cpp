@@ -259,6 +259,9 @@ TEST(SceneInlet, WhatIsWrongWithItIsTold) {
   expect_mistake(beside("[0, 0]"), "its rows overlap those of the inlet");
   expect_mistake(scene_mistakes(""), "no fluid and no inlet");
   expect_mistake(scene_mistakes(unit_square + "[[outlet]]\nshape = \"polyline\"\n"), "a line has no inside");
+  const std::string drain = "[[outlet]]\nname = \"drain\"\nshape = \"circle\"\ncenter = [0, 0]\nradius = 1\n";
+  expect_mistake(scene_mistakes(unit_square + drain + drain),
+                 "case.toml:15: outlet[2].name = \"drain\": the name is used twice, first at case.toml:10");
   expect_mistake(scene_mistakes(unit_square + "[[outlet]]\nshape = \"box\"\nlow = [0, 0]\nhigh = [0, 1]\n"),
                  "outlet[1].shape = \"box\": the box has no width");
   try {

@@ -429,6 +429,12 @@ TEST(Outline, GapIsThatOfBruteForce) {
     EXPECT_LE(gap.width, nearest + 1e-13);
     EXPECT_NEAR(gap.width, nearest, 0.02);
     ++(gap.width > 0.0 ? apart : meeting);
+    // The shortest connection of shapes that do not meet is a throat.
+    const auto throat = narrowest_throat(first, second, 1e-9, [](const Gap&) { return true; });
+    if (gap.width > 1e-9) {
+      ASSERT_TRUE(throat);
+      EXPECT_NEAR(throat->width, gap.width, 1e-13);
+    }
   }
   EXPECT_GT(apart, 20);
   EXPECT_GT(meeting, 20);
@@ -447,6 +453,29 @@ TEST(Outline, GapsOfNestedAndTouchingShapes) {
   EXPECT_EQ(corners.width, 5.0);
   EXPECT_EQ(corners.begin, (Vector<2>{{1.0, 1.0}}));
   EXPECT_EQ(corners.end, (Vector<2>{{4.0, 5.0}}));
+}
+
+TEST(Outline, ThroatsAreWhereOutlinesAreNearestAndNotInCorners) {
+  const auto all = [](const Gap&) { return true; };
+  const auto line = [](const std::vector<Vector<2>>& points) {
+    std::vector<std::string> mistakes;
+    return make_polyline(points, mistakes).value();
+  };
+  const Outline disc = circle({{0.0, 0.0}}, 1.0), floor = line({{{-9.0, -1.0}}, {{9.0, -1.0}}});
+  EXPECT_FALSE(narrowest_throat(disc, floor, 1e-9, all));  // it lies on it
+  EXPECT_NEAR(narrowest_throat(disc, line({{{-9.0, -1.5}}, {{9.0, -1.5}}}), 1e-9, all)->width, 0.5, 1e-15);
+  EXPECT_FALSE(narrowest_throat(line({{{0.0, 0.0}}, {{0.0, 1.0}}}), line({{{0.0, 0.0}}, {{1.0, 1.0}}}), 1e-9, all));
+  // Of several the narrowest that counts.
+  const Outline comb = line({{{-9.0, -3.0}}, {{-5.0, -1.5}}, {{0.0, -3.0}}, {{5.0, -1.25}}, {{9.0, -3.0}}});
+  EXPECT_DOUBLE_EQ(narrowest_throat(comb, floor, 1e-9, all)->width, 0.25);
+  EXPECT_DOUBLE_EQ(narrowest_throat(comb, floor, 0.3, all)->width, 0.5);
+  EXPECT_DOUBLE_EQ(narrowest_throat(floor, comb, 1e-9, [](const Gap& gap) { return gap.begin[0] < 0.0; })->width, 0.5);
+  // Of an outline with itself.
+  EXPECT_DOUBLE_EQ(narrowest_throat(disc, disc, 1e-9, all).value_or(Gap{}).width, infinity);
+  const Outline block = box({{0.0, 0.0}}, {{1.0, 3.0}});
+  EXPECT_DOUBLE_EQ(narrowest_throat(block, block, 1e-9, all)->width, 1.0);
+  const Outline hook = arc({{0.0, 0.0}}, 1.0, 0.0, 330.0);
+  EXPECT_NEAR(narrowest_throat(hook, hook, 1e-9, all)->width, 2.0 * std::sin(pi / 12.0), 1e-14);
 }
 
 TEST(Outline, RefusesPointsThatAreTheSame) {
