@@ -187,11 +187,18 @@ class Pieces {
         piece.end = edge.at((k + 1.0) / count);
         piece.sweep = edge.sweep / count;
         edges_.push_back(piece);
+        discs_.push_back({piece.at(0.5), 0.5 * piece.length()});
       }
     }
   }
 
   const std::vector<OutlineEdge>& edges() const { return edges_; }
+
+  /// At most the distance of a piece to another's [m].
+  double least_distance(std::size_t k, const Pieces& others, std::size_t other) const {
+    const Disc &one = discs_[k], &two = others.discs_[other];
+    return norm(one.center - two.center) - one.radius - two.radius;
+  }
 
   /// Calls use(point) for the points at a small distance [m] along the outline from a share of a piece.
   template <class Use>
@@ -213,8 +220,14 @@ class Pieces {
   }
 
  private:
+  struct Disc {
+    Vector<2> center;
+    double radius;
+  };
+
   bool closed_;
   std::vector<OutlineEdge> edges_;
+  std::vector<Disc> discs_;  // around them
 };
 
 /// True if no small step of either end along its outline makes a connection shorter. Each end: piece, share.
@@ -503,6 +516,7 @@ std::optional<Gap> narrowest_throat(const Outline& first, const Outline& second,
   Gap narrowest;
   for (std::size_t i = 0; i < ones.size(); ++i) {
     for (std::size_t j = &first == &second ? i + 1 : 0; j < twos.size(); ++j) {
+      if (of_first.least_distance(i, of_second, j) >= narrowest.width) continue;
       for_connections(ones[i], twos[j], [&](double one, double two) {
         const Gap gap{.width = 0.0, .begin = ones[i].at(one), .end = twos[j].at(two)};
         const double width = norm(gap.end - gap.begin);

@@ -26,7 +26,15 @@ std::vector<double> times_of_all(const std::vector<MotionEntry>& motions, double
   return times;
 }
 
-std::string time_text(const WallGap& gap) { return gap.time > 0.0 ? fmt::format(" at t = {:.4g} s", gap.time) : ""; }
+/// "at (1, 0.5) m", and the time if it is not the start.
+std::string place_text(const WallGap& gap) {
+  constexpr double rounding = 1e-12;
+  Vector<2> place = gap.place;
+  for (int k = 0; k < 2; ++k)
+    if (std::abs(place[k]) < rounding * norm(gap.place)) place[k] = 0.0;
+  return fmt::format("at ({:.5g}, {:.5g}) m{}", place[0], place[1],
+                     gap.time > 0.0 ? fmt::format(" at t = {:.4g} s", gap.time) : "");
+}
 
 /// Faces, and pieces in line with each other that they are made of.
 std::string faces_text(const WallEntry& entry, const Outline& outline) {
@@ -53,17 +61,16 @@ std::string gap_text(std::size_t wall, const std::vector<WallGap>& gaps, const s
     if ((gap.one == wall || gap.other == wall) && (!narrowest || gap.width < narrowest->width)) narrowest = &gap;
   if (!narrowest) return "";
   const std::size_t other = narrowest->one == wall ? narrowest->other : narrowest->one;
-  return fmt::format(", narrowest gap {:.3g} dp, to {}, at ({:.4g}, {:.4g}) m{}", narrowest->width,
-                     other == wall ? "itself" : walls[other].name, narrowest->place[0], narrowest->place[1],
-                     time_text(*narrowest));
+  return fmt::format(", narrowest gap {:.3g} dp, to {}, {}", narrowest->width,
+                     other == wall ? "itself" : walls[other].name, place_text(*narrowest));
 }
 
 std::string gap_warning(const WallGap& gap, const std::vector<Wall>& walls) {
   const std::string between = gap.one == gap.other ? fmt::format("within the wall \"{}\"", walls[gap.one].name)
                                                    : fmt::format("between the walls \"{}\" and \"{}\"",
                                                                  walls[gap.one].name, walls[gap.other].name);
-  return fmt::format("the gap {} is {:.3g} dp wide at ({:.6g}, {:.6g}) m{}; fluid needs {} dp to pass", between,
-                     gap.width, gap.place[0], gap.place[1], time_text(gap), least_gap);
+  return fmt::format("the gap {} is {:.3g} dp wide {}; fluid needs {} dp to pass", between, gap.width, place_text(gap),
+                     least_gap);
 }
 
 /// Between which numbers a value stays; nothing if it does not change.
