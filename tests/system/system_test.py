@@ -409,7 +409,7 @@ class Run(System):
             return list(csv.DictReader(file))
 
     def snapshots(self):
-        return sorted((self.directory / "out").glob("*.vtkhdf"))
+        return sorted((self.directory / "out").glob("*_????????.vtkhdf"))
 
     def test_writes_snapshots_series_and_history(self):
         done = self.run_case("--set", "time.end=0.05", "--set", "output.interval=0.02", "--set",
