@@ -69,7 +69,8 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   app.add_flag("--describe", describe,
                "Print every key of a case file and every column of the history with unit and meaning")
       ->disable_flag_override();
-  app.add_flag("--check", line.check, "Validate the case; print its particles, memory, scene and time step limits; draw the scene")
+  app.add_flag("--check", line.check,
+               "Validate the case; print its particles, memory, scene and time step limits; draw the scene")
       ->disable_flag_override();
   app.add_option("--plan", line.plan_ranks, "Decompose the case for 1 to 1000000 ranks; print balance, halo, memory")
       ->option_text("RANKS")

@@ -14,8 +14,8 @@ namespace impinge {
 std::vector<NamedText> load_case_files_on_first_rank(MPI_Comm comm, const std::string& path);
 
 /// Sets the case up without running it; prints particles, memory, balance, the scene and the limits of dt; writes and
-/// draws the scene, in the place of what an earlier call has written. Collective. Throws InputError where a run could not
-/// be or could not write, FileError.
+/// draws the scene, in the place of what an earlier call has written. Collective. Throws InputError where a run could
+/// not be or could not write, FileError.
 void check_case(MPI_Comm comm, const Case& config);
 
 /// Decomposes the case's initial state for `ranks` ranks, whatever the size of `comm`, and prints what each would own
