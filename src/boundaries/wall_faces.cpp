@@ -238,17 +238,22 @@ const Motion<Dim>* WallFaces<Dim>::common_motion() const {
 }
 
 template <int Dim>
-double WallFaces<Dim>::largest_speed() const {
+double WallFaces<Dim>::largest_speed(double time) const {
+  std::vector<Pose<Dim>> pose;
+  for (const auto& motion : motions_) pose.push_back((*motion)(time));
+  const auto speed_at = [](const Pose<Dim>& at, const Vector<Dim>& rest) {
+    return norm(at.velocity_at(at.of_position(rest)));
+  };
   double largest = 0.0;
-  for (int f = 0; f < count(); ++f) {
-    if (!moves(f)) continue;
-    for (int end = 0; end < 2 && has_ends(f); ++end)
-      largest = std::max(largest, norm(velocity(f, vertex(f, end).place)));
-    if (is_flat(f)) continue;
-    const Pose<Dim>& pose = velocity_pose_[static_cast<std::size_t>(at(f).motion)];
+  for (std::size_t v = 0; v < rest_vertices_.size(); ++v)
+    if (vertex_motion_[v] >= 0)
+      largest = std::max(largest, speed_at(pose[static_cast<std::size_t>(vertex_motion_[v])], rest_vertices_[v].place));
+  for (const FaceData& face : rest_) {
+    if (face.motion < 0 || face.radius == 0.0) continue;
+    const Pose<Dim>& of_face = pose[static_cast<std::size_t>(face.motion)];
     double rate = 0.0;
-    for (const Vector<Dim>& row : pose.spin.row) rate = std::max(rate, norm(row));
-    largest = std::max(largest, norm(pose.velocity_at(at(f).center)) + rate * at(f).radius);
+    for (const Vector<Dim>& row : of_face.spin.row) rate = std::max(rate, norm(row));
+    largest = std::max(largest, speed_at(of_face, face.center) + rate * face.radius);
   }
   return largest;
 }

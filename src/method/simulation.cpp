@@ -104,14 +104,13 @@ template <int Dim>
 void Simulation<Dim>::try_step(double target) {
   ++report_.step;
   const double spacing = settings_.particles.spacing;
-  const double acceleration = BodyForce<Dim>(settings_.fluid, report_.time).largest(comm_, state_.particles);
-  choose_time_step(settings_.time, spacing, acceleration, target, report_);
+  const Flow flow = measure_flow();
+  choose_time_step(settings_.time, spacing, flow.passing_speed, flow.pull, target, report_);
   const double end = report_.dt == target - report_.time ? target : report_.time + report_.dt;
   const BodyForce<Dim> force(settings_.fluid, report_.time + 0.5 * report_.dt);
   const MotionRule rule(settings_.time, report_.dt);
-  const auto [flow_speed, pull] = measure_flow(force, acceleration);
   // Of a fall over one spacing: it keeps shifting and density correction active in water at rest [m/s].
-  const double fall_speed = std::sqrt(pull * spacing);
+  const double fall_speed = std::sqrt(flow.pull * spacing);
   {
     const PhaseLog log(Phase::predict);
     set_inlets(report_.time + 0.5 * report_.dt, scene_.inlets, state_.particles);
@@ -123,8 +122,8 @@ void Simulation<Dim>::try_step(double target) {
   pass_boundaries();
   redistribute();
   find_neighbours();
-  solve_pressure(rule, force, std::max(flow_speed, 3.0 * fall_speed));
-  correct(rule, flow_speed, fall_speed);
+  solve_pressure(rule, force, std::max(flow.speed, 3.0 * fall_speed));
+  correct(rule, flow.speed, fall_speed);
   report_.time = end;
   place_wall_points(end);
   measure_totals();
@@ -156,7 +155,6 @@ void Simulation<Dim>::for_numbers(StepReport& report, AveragingWindow& window, s
   use("next_id", next_id);
   use("wall_time", wall_times.place);
   use("wall_velocity_time", wall_times.velocity);
-  use("wall_speed", report.wall_speed);
   for (std::size_t k = 0; k < inlets.size(); ++k) use(fmt::format("inlet_{}_last_row", k + 1), inlets[k].last_row);
   for (std::size_t k = 0; k < outlets.size(); ++k)
     if (outlets[k].region) use(fmt::format("outlet_{}_out", k + 1), outlets[k].out);
@@ -284,25 +282,36 @@ void Simulation<Dim>::place_wall_points(double time) {
   if (!state_.walls.any_moves()) return;
   for (std::size_t i = 0; i < state_.owned(); ++i)
     if (is_wall_point(i)) state_.particles.position[i] = wall_point_at(state_.particles.id[i], time);
-  report_.wall_speed = state_.walls.faces().largest_speed();
 }
 
 // Where the walls move as one body, in their frame: a tank at constant velocity is one at rest, and what turns with a
 // drum is pulled outwards.
 template <int Dim>
-typename Simulation<Dim>::Flow Simulation<Dim>::measure_flow(const BodyForce<Dim>& force, double acceleration) const {
-  const Motion<Dim>* const motion = state_.walls.faces().common_motion();
-  if (!motion) return {report_.max_speed, acceleration};
-  const Pose<Dim> pose = (*motion)(report_.time);
-  std::array<double, 2> largest{};
+typename Simulation<Dim>::Flow Simulation<Dim>::measure_flow() const {
+  const WallFaces<Dim>& faces = state_.walls.faces();
+  const BodyForce<Dim> force(settings_.fluid, report_.time);
+  const double latest = report_.time + longest_step(settings_.time, report_);
+  const Motion<Dim>* const motion = faces.common_motion();
+  if (!motion) {
+    const double pull = force.largest(comm_, state_.particles);
+    const double wall_speed = std::max(faces.largest_speed(report_.time), faces.largest_speed(latest));
+    return {.speed = report_.max_speed, .passing_speed = std::max(report_.max_speed, wall_speed), .pull = pull};
+  }
+  const Pose<Dim> pose = (*motion)(report_.time), later = (*motion)(latest);
+  std::array<double, 3> largest{};
   for (std::size_t i = 0; i < state_.owned(); ++i) {
     if (!state_.moves(i)) continue;
-    const Vector<Dim>& place = state_.particles.position[i];
-    largest[0] = std::max(largest[0], norm(state_.particles.velocity[i] - pose.velocity_at(place)));
-    largest[1] = std::max(largest[1], norm(force.at(place) - pose.acceleration_at(place)));
+    const Vector<Dim>&place = state_.particles.position[i], &velocity = state_.particles.velocity[i];
+    largest[0] = std::max(largest[0], norm(velocity - pose.velocity_at(place)));
+    largest[1] = std::max(largest[1], norm(velocity - later.velocity_at(place)));
+    largest[2] = std::max(largest[2], norm(force.at(place) - pose.acceleration_at(place)));
   }
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, comm_);
-  return {largest[0], largest[1]};
+  // Inlets and outlets do not move along.
+  const bool is_closed = scene_.inlets.empty() && scene_.outlets.empty();
+  const double passing_speed =
+      is_closed ? std::max(largest[0], largest[1]) : std::max(report_.max_speed, faces.largest_speed(latest));
+  return {.speed = largest[0], .passing_speed = passing_speed, .pull = largest[2]};
 }
 
 template <int Dim>

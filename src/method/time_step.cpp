@@ -6,7 +6,8 @@
 namespace impinge {
 namespace {
 
-constexpr double rounding = 1e-6;  // by which dt may be longer than its limits, so that rounding adds no step
+constexpr double most_growth = 1.1;  // of a step over the one before
+constexpr double rounding = 1e-6;    // by which dt may be longer than its limits, so that rounding adds no step
 
 /// The longest step of at most `dt` of which a whole number fills the `rest` of the time, where that is few steps.
 double fitted(double dt, double rest) {
@@ -17,11 +18,14 @@ double fitted(double dt, double rest) {
 
 }  // namespace
 
-void choose_time_step(const TimeSettings& time, double spacing, double acceleration, double target,
+double longest_step(const TimeSettings& time, const StepReport& report) {
+  return report.free_dt > 0.0 ? std::min(time.dt, most_growth * report.free_dt) : time.dt;
+}
+
+void choose_time_step(const TimeSettings& time, double spacing, double speed, double acceleration, double target,
                       StepReport& report) {
   constexpr double first_courant = 0.05;
-  constexpr double most_growth = 1.1;
-  const double largest = time.cfl * spacing / std::max(report.max_speed, report.wall_speed);  // infinite at rest
+  const double largest = time.cfl * spacing / speed;  // infinite at rest
   const double grown = report.free_dt > 0.0 ? most_growth * report.free_dt : first_courant / time.cfl * largest;
   const double fallen = time.cfl * std::sqrt(spacing / acceleration);  // infinite without a force
   const double free = std::min({time.dt, largest, fallen, grown});

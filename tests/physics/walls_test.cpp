@@ -94,6 +94,65 @@ velocity = [0.7, -0.4]
   }
 }
 
+TEST(Walls, ThatMoveSteadilyChangeNothingUnderGravity) {
+  const auto after_50_steps = [](const std::string& velocity) {
+    const Case config = scene(std::string(moving_tank) + fmt::format(R"(velocity = {0}
+[[motion]]
+name = "way"
+type = "constant"
+velocity = {0}
+)",
+                                                                     velocity),
+                              1.0, {"fluid.gravity=[0, -9.81]", "pressure.tolerance=1e-12", "time.dt=0.01"});
+    auto simulation = make_simulation<2>(comm, config);
+    for (int step = 0; step < 50; ++step) simulation.step();
+    const Particles<2>& particles = simulation.particles();
+    std::map<std::int64_t, Vector<2>> places;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::fluid) places[particles.id[i]] = particles.position[i];
+    return std::pair(simulation.report().time, places);
+  };
+  const auto [time, at_rest] = after_50_steps("[0, 0]");
+  const auto [same_time, moved] = after_50_steps("[0.7, -0.4]");  // twice the speed that would limit dt
+  EXPECT_NEAR(same_time, time, 1e-12);
+  const Vector<2> way = time * Vector<2>{{0.7, -0.4}};
+  ASSERT_EQ(moved.size(), at_rest.size());
+  for (const auto& [id, place] : moved) EXPECT_LT(norm(place - way - at_rest.at(id)), 1e-8 * dp);
+}
+
+// At 0.02 s a piston starts at once with 3 m/s: within a step of 1 ms it would pass a third of a spacing.
+TEST(Walls, ThatStartAtOnceShortenTheStepBefore) {
+  const Case config = scene(R"(fluid.gravity = [0, -9.81]
+[[wall]]
+shape = "box"
+low = [0, 0]
+high = [0.3, 0.4]
+wet = "inside"
+[[wall]]
+shape = "polyline"
+points = [[0.01, 0], [0.01, 0.4]]
+wet = "right"
+motion = "push"
+[[fluid.region]]
+shape = "box"
+low = [0.01, 0]
+high = [0.3, 0.1]
+[[motion]]
+name = "push"
+type = "constant"
+velocity = [3, 0]
+start = 0.02
+end = 0.03
+)",
+                            0.03);
+  auto simulation = make_simulation<2>(comm, config);
+  while (simulation.report().time < config.time.end - 1e-9) {
+    simulation.step(config.time.end);
+    const StepReport& report = simulation.report();
+    EXPECT_LE(report.time > 0.02 ? report.dt : 0.0, config.time.cfl * dp / 3.0 * (1.0 + 1e-6));
+  }
+}
+
 TEST(Walls, ThatRiseOrFallChangeTheWeightOfTheWater) {
   for (const double up : {3.0, -gravity}) {
     std::string times, places;

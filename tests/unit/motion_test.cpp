@@ -101,16 +101,15 @@ TEST(MotionRule, OfTheMeanVelocityTakesAFallExactly) {
 
 TEST(TimeStep, IsTheSmallestOfItsLimits) {
   constexpr double spacing = 0.01;
-  const auto choose = [](double dt, double max_speed, double acceleration, double last, int halvings = 0) {
+  const auto choose = [](double dt, double speed, double acceleration, double last, int halvings = 0) {
     TimeSettings time;
     time.dt = dt;
     time.cfl = 0.2;
     StepReport report;
     report.dt = last;
-    report.max_speed = max_speed;
     report.halvings = halvings;
     report.free_dt = last;
-    choose_time_step(time, spacing, acceleration, HUGE_VAL, report);
+    choose_time_step(time, spacing, speed, acceleration, HUGE_VAL, report);
     return std::pair(report.dt, report.limit);
   };
   EXPECT_EQ(choose(1e-3, 1.0, 10.0, 1e-3), std::pair(1e-3, StepLimit::case_dt));
@@ -133,7 +132,7 @@ TEST(TimeStep, EndsAtATargetWithoutTinySteps) {
     StepReport report;
     std::vector<double> steps;
     while (report.time < target) {
-      choose_time_step(time, 1.0, 1.0, target, report);
+      choose_time_step(time, 1.0, 0.0, 1.0, target, report);
       EXPECT_LE(report.dt, dt * (1.0 + 1e-6));
       EXPECT_EQ(report.limit, report.dt < 0.999 * dt ? StepLimit::target : StepLimit::case_dt);
       report.time = report.dt == target - report.time ? target : report.time + report.dt;
@@ -156,15 +155,15 @@ TEST(TimeStep, EndsAtATargetWithoutTinySteps) {
   StepReport report;
   time.dt = 1.0;
   report.free_dt = 1e-2;
-  choose_time_step(time, 1.0, 1.0, 1e-7, report);
+  choose_time_step(time, 1.0, 0.0, 1.0, 1e-7, report);
   EXPECT_EQ(report.dt, 1e-7);
-  choose_time_step(time, 1.0, 1.0, HUGE_VAL, report);
+  choose_time_step(time, 1.0, 0.0, 1.0, HUGE_VAL, report);
   EXPECT_DOUBLE_EQ(report.dt, 1.1 * 1.1e-2);
   // A step that is repeated is fitted, too.
   report = {};
   report.free_dt = time.dt = 1e-3;
   report.halvings = 1;
-  choose_time_step(time, 1.0, 1.0, 0.9e-3, report);
+  choose_time_step(time, 1.0, 0.0, 1.0, 0.9e-3, report);
   EXPECT_EQ(std::pair(report.dt, report.limit), std::pair(0.45e-3, StepLimit::target));
 }
 

@@ -54,5 +54,14 @@ TEST(Schedule, RoundingAddsNoTime) {
   }
 }
 
+// 3 * 3.33333333 < 10 by 1e-8.
+TEST(Schedule, HasNoTinyStepBeforeTheEnd) {
+  Case config = with(10.0, 3.33333333, 0.0, 0.0);
+  config.time.dt = 1e-3;
+  EXPECT_EQ(times_of(Schedule(config)), (std::vector{3.33333333, 6.66666666, 10.0}));
+  config.output.interval = 3.333;  // a step of one dt is left
+  EXPECT_EQ(times_of(Schedule(config)), (std::vector{3.333, 6.666, 9.999, 10.0}));
+}
+
 }  // namespace
 }  // namespace impinge

@@ -78,8 +78,8 @@ class WallFaces {
   void move_to(double time, double velocity_time);
   /// The motion that all walls share; none where they are at rest or move apart.
   const Motion<Dim>* common_motion() const;
-  /// Of the walls' ends and the farthest points of their circles [m/s].
-  double largest_speed() const;
+  /// Of the walls' ends and the farthest points of their circles at a time [s] [m/s].
+  double largest_speed(double time) const;
   bool any_moves() const { return !motions_.empty(); }
 
   int count() const { return static_cast<int>(faces_.size()); }

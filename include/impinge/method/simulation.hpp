@@ -73,12 +73,13 @@ class Simulation {
     return state_.particles.type[i] == ParticleType::wall && !scene_.walls.empty();
   }
   Vector<Dim> wall_point_at(std::int64_t id, double time) const;
-  /// The largest speed of the fluid [m/s] and its largest body force per mass [m/s^2].
+  /// Largest values at the start of a step.
   struct Flow {
-    double speed;
-    double pull;
+    double speed;          ///< of the fluid [m/s]
+    double passing_speed;  ///< likewise, and of the walls until the step ends [m/s]
+    double pull;           ///< body force per mass [m/s^2]
   };
-  Flow measure_flow(const BodyForce<Dim>& force, double acceleration) const;
+  Flow measure_flow() const;
   void redistribute();
   void migrate();
   void count_strays(const Strays& strays);

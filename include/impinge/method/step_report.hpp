@@ -26,7 +26,6 @@ struct StepReport {
   std::int64_t lost = 0;                 ///< fluid that left the bounds elsewhere and was removed
   double kinetic_energy = 0.0;           ///< of the fluid [J; J/m in 2D]
   double max_speed = 0.0;                ///< of the fluid [m/s]
-  double wall_speed = 0.0;               ///< largest speed of a wall [m/s]
   double max_pressure = 0.0;             ///< [Pa]
   double floor_force = 0.0;              ///< pressure force on plate or floor [N; N/m in 2D]
   PressureReport pressure;

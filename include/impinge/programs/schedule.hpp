@@ -6,7 +6,8 @@
 namespace impinge {
 
 /// Snapshots and checkpoints at the multiples of their intervals, the start of the wall-pressure average, and the end.
-/// It remembers nothing: a restarted run has the same times. Times that differ by 1e-9 of the end are one.
+/// It remembers nothing: a restarted run has the same times. Times that differ by 1e-9 of the end are one, and so are
+/// the end and what is due less than a hundredth of time.dt before it.
 class Schedule {
  public:
   explicit Schedule(const Case& config);
@@ -25,7 +26,8 @@ class Schedule {
   double checkpoints_;  // likewise
   double average_start_;
   double end_;
-  double tolerance_;
+  double tolerance_;   // [s]
+  double least_step_;  // the last one [s]
 };
 
 }  // namespace impinge
