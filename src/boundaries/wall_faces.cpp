@@ -552,6 +552,7 @@ double WallFaces<Dim>::path_factor(const Vector<Dim>& from, const Vector<Dim>& i
   if constexpr (Dim == 2) {
     Vector<2> begin = from, end = image;
     double factor = 1.0, since = 0.0;
+    double travelled = 0.0;              // from the path's begin to that of the leg
     std::array<int, 2> skipped{-1, -1};  // the faces that a leg begins and ends at
     std::array<int, 4> passed{};         // vertices that fade, of the faces that a leg begins and ends at
     std::size_t n_passed = 0;
@@ -570,7 +571,9 @@ double WallFaces<Dim>::path_factor(const Vector<Dim>& from, const Vector<Dim>& i
         // Inside the face, positive: the begin is on the line's right, the end on its left.
         const double left = passing_distance(begin, way, length, place);
         const double inside = side == 0 ? -left : left;
-        if (fades(f, side)) {
+        // Beyond the path's ends a line may pass near to a vertex and be far from it where it is reflected.
+        const double past = dot(place - begin, way) / length;
+        if (fades(f, side) && past > -travelled && past < length) {
           factor *= faded(inside, fade * spacing_);
           if (std::abs(inside) >= fade * spacing_) continue;
           passed[n_passed++] = at(f).vertex[static_cast<std::size_t>(side)];
@@ -584,6 +587,7 @@ double WallFaces<Dim>::path_factor(const Vector<Dim>& from, const Vector<Dim>& i
       factor *= leg_factor(begin, end, since, share, skipped, {passed.data(), n_passed});
       if (factor == 0.0) return 0.0;
       begin = begin + share * way;
+      travelled += share * length;
       end = reflection_at(mirror).of_position(end);
       skipped = {f, -1};
       std::copy(passed.begin() + static_cast<std::ptrdiff_t>(before),

@@ -3,6 +3,35 @@
 #include "impinge/method/operators.hpp"
 
 namespace impinge {
+namespace {
+
+// One particle that misses few neighbours among others that miss none is disorder, not a surface. In a closed container
+// it would be the only place where the pressure is zero.
+template <int Dim>
+void leave_out_lone(double n0, State<Dim>& state) {
+  constexpr double least_density = 0.6;  // [n0]
+  Particles<Dim>& particles = state.particles;
+  const PairList& near = state.near();
+  const int first_image = state.walls.first_image();
+  state.refresh(particles.free_surface);
+  const auto is_lone = [&](int i) {
+    for (int k = near.begin(i); k < near.end(i); ++k) {
+      const int j = near.index[static_cast<std::size_t>(k)];
+      if (!particles.free_surface[static_cast<std::size_t>(j)]) continue;
+      if (j < first_image || state.walls.originals()[static_cast<std::size_t>(j - first_image)] != i) return false;
+    }
+    return true;
+  };
+  std::vector<int> lone;
+  for (int i = 0; i < particles.owned; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (particles.free_surface[self] && particles.number_density[self] > least_density * n0 && is_lone(i))
+      lone.push_back(i);
+  }
+  for (const int i : lone) particles.free_surface[static_cast<std::size_t>(i)] = 0;
+}
+
+}  // namespace
 
 template <int Dim>
 void measure_density(const MethodSettings& settings, const LatticeSums& lattice, State<Dim>& state) {
@@ -36,6 +65,7 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
     state.role[self] = zero ? PressureRole::zero : PressureRole::unknown;
     if (type == ParticleType::wall) state.asymmetry[self] = {};  // the free surface is the fluid's
   }
+  if (limits.zero_outside) leave_out_lone(n0, state);
   state.decomposition.halo().refresh(state.role, particles.owned);
   if (corrects || needs_all_asymmetries || pressure.packing) state.refresh(particles.free_surface);
   if (needs_all_asymmetries) state.refresh_directions(state.asymmetry);

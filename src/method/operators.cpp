@@ -41,14 +41,6 @@ void number_density(const PairList& near, std::span<double> density) {
   }
 }
 
-double packing(const PairList& near, KernelType kernel, int i) {
-  return with_kernel(kernel, [&]<class Kernel>(Kernel) {
-    double sum = 0.0;
-    for_pairs(near, i, [&](std::size_t, double weight) { sum += packing_weight<Kernel>(weight); });
-    return sum;
-  });
-}
-
 template <int Dim>
 double packing(const PairList& near, std::span<const Vector<Dim>> position, KernelType kernel, double radius,
                int first_scaled, int i) {
@@ -57,9 +49,9 @@ double packing(const PairList& near, std::span<const Vector<Dim>> position, Kern
     double sum = 0.0;
     for_pairs(near, i, [&](std::size_t j, double weight) {
       if (static_cast<int>(j) < first_scaled) {
-        sum += packing_weight<Kernel>(weight);
+        sum += packing_weight<Dim, Kernel>(weight);
       } else if (const double own = Kernel::weight(norm(position[j] - centre), radius); own > 0.0) {
-        sum += weight / own * packing_weight<Kernel>(own);
+        sum += weight / own * packing_weight<Dim, Kernel>(own);
       }
     });
     return sum;

@@ -16,7 +16,7 @@ void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.pressure.corrected_gradient, true, false);
   use(s.walls.model, WallModel::mirror, WallModel::particles);
   use(s.free_surface.zero_outside, true, false);
-  use(s.shifting.coefficient, 1.0, 0.0);
+  use(s.shifting.coefficient, s.dimension == 3 ? 3.0 : 1.0, 0.0);
   use(s.shifting.least_distance, 0.9, 0.0);
   use(s.shifting.correct_velocity, true, false);
   use(s.smoothing.rate, 0.2, 0.0);
@@ -95,7 +95,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
            "particles drift by this times the asymmetry F and u_ref dt/dp each step (u_ref: the largest fluid "
            "speed, at least sqrt(|g| dp)), at most by 0.1 dp, not through the free surface, spray not at all; "
            "0: none do",
-           {.unit = "dp", .range = from_to(0, 10)});
+           {.unit = "dp", .range = from_to(0, 10), .fallback = "in 3D 3.0"});
   keys.add("shifting.least_distance", s.shifting.least_distance,
            "beside the free surface, fluid particles nearer than this drift apart, by the difference times "
            "shifting.coefficient and u_ref dt/dp; 0: none do",

@@ -20,7 +20,7 @@ LatticeSums lattice_sums(KernelType type, double effective_radius) {
     if (r == 0.0 || r >= effective_radius) return;
     const auto [weight, packed] = with_kernel(type, [&]<class Kernel>(Kernel) {
       const double w = Kernel::weight(r, effective_radius);
-      return std::pair(w, packing_weight<Kernel>(w));
+      return std::pair(w, packing_weight<Dim, Kernel>(w));
     });
     ++neighbours;
     sum += weight;

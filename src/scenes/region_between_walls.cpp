@@ -1,6 +1,7 @@
 #include "impinge/scenes/region_between_walls.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace impinge {
@@ -42,8 +43,7 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     }
     return static_cast<double>(within) / (parts * parts);
   };
-  double cells = 0.0;      // beside walls
-  double far_cells = 0.0;  // elsewhere
+  double cells = 0.0;  // beside walls
   std::int64_t far = 0;
   for (std::int64_t k = 0; k < region.points(); ++k) {
     const Vector<2> position = region.place(k);
@@ -51,8 +51,6 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     Vector<2> inside;
     if (wall_depth >= 1.0) {
       far += region.point(k, inside) ? 1 : 0;
-      const double beyond = region.distance(position) / spacing;
-      far_cells += beyond < -1.0 ? 1.0 : beyond > 1.0 ? 0.0 : share_of(k);
       continue;
     }
     if (wall_depth < -1.0) continue;
@@ -85,7 +83,37 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
   }
   std::ranges::sort(near_, {}, &Point::number);
   count_ = far + static_cast<std::int64_t>(near_.size());
-  volume_ = candidates.empty() ? region.volume() : (far_cells + cells) * spacing * spacing;
+}
+
+// By cells of the region's bounds, those that an edge may cut by their parts.
+double RegionBetweenWalls::volume() const {
+  const Box<2> box = region_.bounds();
+  std::array<int, 2> extent{};
+  Vector<2> cell;
+  for (int k = 0; k < 2; ++k) {
+    const double length = box.high[k] - box.low[k];
+    extent[static_cast<std::size_t>(k)] = std::max(1, static_cast<int>(std::ceil(length / spacing_)));
+    cell[k] = length / extent[static_cast<std::size_t>(k)];
+  }
+  const auto depth = [&](double x, double y) {
+    const Vector<2> point{{box.low[0] + x * cell[0], box.low[1] + y * cell[1]}};
+    return std::min(wet_.depth(point), -region_.distance(point));
+  };
+  double cells = 0.0;
+  for (int x = 0; x < extent[0]; ++x) {
+    for (int y = 0; y < extent[1]; ++y) {
+      const double at_centre = depth(x + 0.5, y + 0.5);
+      if (std::abs(at_centre) > 0.5 * norm(cell)) {
+        cells += at_centre > 0.0 ? 1.0 : 0.0;
+        continue;
+      }
+      int within = 0;
+      for (int part = 0; part < parts * parts; ++part)
+        within += depth(x + (part % parts + 0.5) / parts, y + (part / parts + 0.5) / parts) > 0.0 ? 1 : 0;
+      cells += static_cast<double>(within) / (parts * parts);
+    }
+  }
+  return cells * cell[0] * cell[1];
 }
 
 bool RegionBetweenWalls::point(std::int64_t k, Vector<2>& position) const {

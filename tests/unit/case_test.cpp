@@ -134,7 +134,7 @@ TEST(Case, TheSchemeSetsDefaults) {
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
     EXPECT_EQ(c.free_surface.zero_outside, consistent);
-    EXPECT_EQ(c.shifting.coefficient, consistent ? 1.0 : 0.0);
+    EXPECT_EQ(c.shifting.coefficient, !consistent ? 0.0 : c.dimension == 3 ? 3.0 : 1.0);
     EXPECT_EQ(c.shifting.least_distance, consistent ? 0.9 : 0.0);
     EXPECT_EQ(c.shifting.correct_velocity, consistent);
     EXPECT_EQ(c.smoothing.rate, consistent ? 0.2 : 0.0);

@@ -49,7 +49,7 @@ double relative_packing(double strain) {
       if (x == 0 && y == 0) continue;
       const double along = std::exp(strain) * (x + y), across = std::exp(-strain) * (x - y);
       const double r = std::sqrt(0.5) * std::hypot(along, across);
-      sum += packing_weight<NonSingularKernel>(NonSingularKernel::weight(r, radius));
+      sum += packing_weight<2, NonSingularKernel>(NonSingularKernel::weight(r, radius));
     }
   }
   return sum / lattice_sums<2>(KernelType::non_singular, radius).packing;
@@ -59,6 +59,24 @@ double relative_packing(double strain) {
 TEST(LatticeSums, PackingDoesNotSeeAShearOfTheLattice) {
   EXPECT_NEAR(relative_packing(0.0), 1.0, 1e-14);
   for (const double strain : {0.1, 0.2, 0.25 * std::log(3.0)}) EXPECT_NEAR(relative_packing(strain), 1.0, 0.0015);
+}
+
+// Water that turns round in a tank strains the cubic lattice along one axis and compresses it along another.
+TEST(LatticeSums, PackingHardlySeesAStrainOfTheCubicLattice) {
+  constexpr double radius = 2.6;
+  for (const double strain : {0.1, 0.2, 0.3, 0.4}) {
+    double sum = 0.0;
+    for (int x = -5; x <= 5; ++x) {
+      for (int y = -5; y <= 5; ++y) {
+        for (int z = -5; z <= 5; ++z) {
+          if (x == 0 && y == 0 && z == 0) continue;
+          const double r = std::hypot((1.0 - strain) * x, y / (1.0 - strain), z);
+          sum += packing_weight<3, NonSingularKernel>(NonSingularKernel::weight(r, radius));
+        }
+      }
+    }
+    EXPECT_NEAR(sum / lattice_sums<3>(KernelType::non_singular, radius).packing, 1.0, 0.012) << strain;
+  }
 }
 
 // Radius 1.2 reaches the six nearest neighbours only, 1.5 the twelve behind them too.

@@ -1,5 +1,6 @@
 // Walls of any shape: their sides, points, particles, the fluid between them, and what can be wrong with them.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -154,6 +155,17 @@ TEST(SceneWalls, TheVolumeOfAFluidIsThatBetweenTheWalls) {
       volume.of_particles,
       static_cast<double>(std::ranges::count(particles_of(scene_of(config)).type, ParticleType::fluid)) * dp * dp,
       1e-12);
+}
+
+// 18.3 rows of particles are 18.
+TEST(SceneWalls, TheVolumeIsThatOfTheFluidNotOfItsLattice) {
+  const Case config =
+      scene_case(fmt::format("[[fluid.region]]\nshape = \"box\"\nlow = [0, 0]\nhigh = [1, {0}]\n"
+                             "[[wall]]\nshape = \"box\"\nlow = [0, 0]\nhigh = [1, 2]\nwet = \"inside\"\n",
+                             18.3 * dp));
+  const RegionVolume volume = volume_between_walls<2>(config, config, config.regions[0]);
+  EXPECT_NEAR(volume.expected, 18.3 * dp, 1e-9);
+  EXPECT_NEAR(volume.of_particles, 18.0 * dp, 1e-9);
 }
 
 TEST(SceneWalls, TheBoundsHoldThem) {

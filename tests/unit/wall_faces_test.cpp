@@ -158,6 +158,17 @@ TEST(SpecularPairs, AreSymmetric) {
   EXPECT_LT(largest_asymmetry({both, walls_of({plate(sheet)})}), 1e-12);
 }
 
+// Two particles one above the other, right beyond the end of an upright face: the line between one and the other's
+// image runs along the face's plane and is reflected far beyond the face.
+TEST(SpecularPairs, EndWithTheirFace) {
+  const Outline step =
+      polygon({{{-9.0, 0.0}}, {{0.0, 0.0}}, {{0.0, -4.0}}, {{9.0, -4.0}}, {{9.0, 9.0}}, {{-9.0, 9.0}}});
+  const Cloud cloud({{{0.01, 2.0}}, {{0.02, 3.2}}}, walls_of({wet_inside(step)}));
+  const double direct = NonSingularKernel::weight(norm(Vector<2>{{0.01, 1.2}}), reach);
+  EXPECT_NEAR(cloud.weights(0).at(1), direct, 1e-12);
+  EXPECT_NEAR(cloud.weights(1).at(0), direct, 1e-12);
+}
+
 /// A wedge of fluid of some angle at the origin, its first face along x.
 Outline wedge(double degrees, double size) {
   std::vector<Vector<2>> points{{{0.0, 0.0}}, {{size, 0.0}}};

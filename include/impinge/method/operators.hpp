@@ -16,11 +16,9 @@ void number_density(const PairList& near, std::span<double> density);
 
 /// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. The lattice and clouds that a flow has stirred have
 /// the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at zero,
-/// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`: the one of the weights.
-double packing(const PairList& near, KernelType kernel, int i);
-
-/// Likewise where the weights of pairs with an index from `first_scaled` on are not those of their distances but some
-/// share of them, which the packing's weights then have, too. `radius`: of the weights [m].
+/// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`, `radius`: of the weights [m]; those of
+/// pairs with an index from `first_scaled` on are not those of their distances but some share of them, which the
+/// packing's weights then have, too.
 template <int Dim>
 double packing(const PairList& near, std::span<const Vector<Dim>> position, KernelType kernel, double radius,
                int first_scaled, int i);

@@ -16,8 +16,8 @@ class RegionBetweenWalls {
   /// `spacing`: dp [m].
   RegionBetweenWalls(const PlacedRegion<2>& region, const WetSpace& wet, double spacing);
 
-  /// Of the region between the walls [m^2].
-  double volume() const { return volume_; }
+  /// Of the region between the walls, to some parts in a thousand of the cells at its edges [m^2].
+  double volume() const;
   /// Particles.
   std::int64_t count() const { return count_; }
   /// The place of a lattice point; false where there is none.
@@ -36,7 +36,6 @@ class RegionBetweenWalls {
   WetSpace wet_;
   double spacing_;
   std::vector<Point> near_;  // the points beside walls, by number
-  double volume_ = 0.0;
   std::int64_t count_ = 0;
   bool is_cut_ = false;
 };
