@@ -18,9 +18,6 @@ constexpr double rounding = 1e-15;         // of a position, over its distance f
 constexpr double least_share = 1e-9;       // of a leg that begins at a face before it can meet another
 constexpr int most_bounces = 8;            // of a particle in a step
 
-double cross(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
-Vector<2> turned_left(const Vector<2>& a) { return {{-a[1], a[0]}}; }
-
 /// Angle from one direction to another, counter-clockwise for sense = 1 and clockwise for -1, in [0, 2 pi) [rad].
 double angle_between(const Vector<2>& from, const Vector<2>& to, double sense) {
   const double angle = sense * std::atan2(cross(from, to), dot(from, to));

@@ -18,7 +18,6 @@ constexpr double angle_error = 1e-12;  // [rad]
 constexpr double share_error = 1e-12;  // of a length
 constexpr double area_error = 1e-15;   // of a product of lengths
 
-double cross(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 Vector<2> turned_right(const Vector<2>& a) { return {{a[1], -a[0]}}; }
 double angle_of(const Vector<2>& a) { return std::atan2(a[1], a[0]); }
 Vector<2> direction(double angle) { return {{std::cos(angle), std::sin(angle)}}; }

@@ -291,12 +291,10 @@ typename Simulation<Dim>::Flow Simulation<Dim>::measure_flow() const {
   const WallFaces<Dim>& faces = state_.walls.faces();
   const BodyForce<Dim> force(settings_.fluid, report_.time);
   const double latest = report_.time + longest_step(settings_.time, report_);
+  const double in_space = std::max({report_.max_speed, faces.largest_speed(report_.time), faces.largest_speed(latest)});
   const Motion<Dim>* const motion = faces.common_motion();
-  if (!motion) {
-    const double pull = force.largest(comm_, state_.particles);
-    const double wall_speed = std::max(faces.largest_speed(report_.time), faces.largest_speed(latest));
-    return {.speed = report_.max_speed, .passing_speed = std::max(report_.max_speed, wall_speed), .pull = pull};
-  }
+  if (!motion)
+    return {.speed = report_.max_speed, .passing_speed = in_space, .pull = force.largest(comm_, state_.particles)};
   const Pose<Dim> pose = (*motion)(report_.time), later = (*motion)(latest);
   std::array<double, 3> largest{};
   for (std::size_t i = 0; i < state_.owned(); ++i) {
@@ -307,11 +305,10 @@ typename Simulation<Dim>::Flow Simulation<Dim>::measure_flow() const {
     largest[2] = std::max(largest[2], norm(force.at(place) - pose.acceleration_at(place)));
   }
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, comm_);
-  // Inlets and outlets do not move along.
-  const bool is_closed = scene_.inlets.empty() && scene_.outlets.empty();
-  const double passing_speed =
-      is_closed ? std::max(largest[0], largest[1]) : std::max(report_.max_speed, faces.largest_speed(latest));
-  return {.speed = largest[0], .passing_speed = passing_speed, .pull = largest[2]};
+  const bool all_moves_along = scene_.inlets.empty() && scene_.outlets.empty();
+  return {.speed = largest[0],
+          .passing_speed = all_moves_along ? std::max(largest[0], largest[1]) : in_space,
+          .pull = largest[2]};
 }
 
 template <int Dim>

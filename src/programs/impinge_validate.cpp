@@ -51,8 +51,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app(
       "Measures a run with a plane jet against the exact solution: geometry = \"jet\", or a jet of a scene on a plate, "
-      "a "
-      "wedge, a cup or another jet. Reads the snapshots in DIR; writes the report, profiles "
+      "a wedge, a cup or another jet. Reads the snapshots in DIR; writes the report, profiles "
       "and figures into DIR/validation.",
       "impinge-validate");
   app.footer("\nExit codes: 0 done, 1 a file could not be read or written, 2 wrong input");

@@ -40,27 +40,19 @@ struct Cells {
   }
 };
 
-/// The corner of a box that the bits of k name.
-template <int Dim>
-Vector<Dim> corner_of(const Box<Dim>& box, std::size_t k) {
-  Vector<Dim> corner;
-  for (int axis = 0; axis < Dim; ++axis) corner[axis] = (k >> axis) & 1 ? box.high[axis] : box.low[axis];
-  return corner;
-}
-
 /// The edges of a box; in two dimensions as one closed line.
 template <int Dim>
 void add_box(SceneItem item, std::size_t number, const Box<Dim>& box, Cells<Dim>& cells,
              const Vector<Dim>& normal = {}) {
   if constexpr (Dim == 2) {
     std::vector<Vector<2>> line;
-    for (const std::size_t k : {0u, 1u, 3u, 2u, 0u}) line.push_back(corner_of(box, k));
+    for (const int k : {0, 1, 3, 2, 0}) line.push_back(box.corner(k));
     cells.add(item, number, line, normal);
   } else {
-    for (std::size_t k = 0; k < 8; ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        if (const std::size_t next = k | (std::size_t{1} << axis); next != k)
-          cells.add(item, number, {corner_of(box, k), corner_of(box, next)}, normal);
+    for (int k = 0; k < 8; ++k)
+      for (int axis = 0; axis < 3; ++axis)
+        if (const int next = k | (1 << axis); next != k)
+          cells.add(item, number, {box.corner(k), box.corner(next)}, normal);
   }
 }
 

@@ -168,9 +168,7 @@ Box<Dim> PlacedRegion<Dim>::bounds() const {
   const Box<Dim> own = shape_->bounds();
   Box<Dim> around;
   for (int code = 0; code < 1 << Dim; ++code) {
-    Vector<Dim> corner;
-    for (int k = 0; k < Dim; ++k) corner[k] = (code >> k) % 2 == 0 ? own.low[k] : own.high[k];
-    const Vector<Dim> at = placement_(corner);
+    const Vector<Dim> at = placement_(own.corner(code));
     for (int k = 0; k < Dim; ++k) {
       around.low[k] = code == 0 ? at[k] : std::min(around.low[k], at[k]);
       around.high[k] = code == 0 ? at[k] : std::max(around.high[k], at[k]);

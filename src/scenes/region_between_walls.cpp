@@ -21,6 +21,15 @@ std::uint64_t scattered(std::int64_t number) {
   return x ^ (x >> 31U);
 }
 
+/// Of a cell's parts, the share whose middles are inside; `is_inside(x, y)`: from the cell's middle [cell edges].
+template <class IsInside>
+double share_inside(IsInside&& is_inside) {
+  int within = 0;
+  for (int a = 0; a < parts; ++a)
+    for (int b = 0; b < parts; ++b) within += is_inside((a + 0.5) / parts - 0.5, (b + 0.5) / parts - 0.5) ? 1 : 0;
+  return static_cast<double>(within) / (parts * parts);
+}
+
 }  // namespace
 
 RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetSpace& wet, double spacing)
@@ -33,15 +42,10 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
   std::vector<Candidate> candidates;
   // Of a cell, how much lies in the region and between the walls.
   const auto share_of = [&](std::int64_t k) {
-    int within = 0;
-    for (int a = 0; a < parts; ++a) {
-      for (int b = 0; b < parts; ++b) {
-        const Vector<2> offset{{(a + 0.5) / parts - 0.5, (b + 0.5) / parts - 0.5}};
-        const Vector<2> part = region.place(k, spacing * offset);
-        within += region.contains(part) && wet.depth(part) > 0.0 ? 1 : 0;
-      }
-    }
-    return static_cast<double>(within) / (parts * parts);
+    return share_inside([&](double x, double y) {
+      const Vector<2> part = region.place(k, spacing * Vector<2>{{x, y}});
+      return region.contains(part) && wet.depth(part) > 0.0;
+    });
   };
   double cells = 0.0;  // beside walls
   std::int64_t far = 0;
@@ -102,15 +106,13 @@ double RegionBetweenWalls::volume() const {
   double cells = 0.0;
   for (int x = 0; x < extent[0]; ++x) {
     for (int y = 0; y < extent[1]; ++y) {
-      const double at_centre = depth(x + 0.5, y + 0.5);
-      if (std::abs(at_centre) > 0.5 * norm(cell)) {
-        cells += at_centre > 0.0 ? 1.0 : 0.0;
-        continue;
+      const double middle_x = x + 0.5, middle_y = y + 0.5;
+      const double at_middle = depth(middle_x, middle_y);
+      if (std::abs(at_middle) > 0.5 * norm(cell)) {
+        cells += at_middle > 0.0 ? 1.0 : 0.0;
+      } else {
+        cells += share_inside([&](double a, double b) { return depth(middle_x + a, middle_y + b) > 0.0; });
       }
-      int within = 0;
-      for (int part = 0; part < parts * parts; ++part)
-        within += depth(x + (part % parts + 0.5) / parts, y + (part / parts + 0.5) / parts) > 0.0 ? 1 : 0;
-      cells += static_cast<double>(within) / (parts * parts);
     }
   }
   return cells * cell[0] * cell[1];

@@ -22,12 +22,8 @@ constexpr double same_direction = 1e-6;  // [rad]
 constexpr double symmetric = 1e-3;       // [H]
 constexpr double leaving = pi / 180.0;   // a sheet leaves a wall that turns away by more [rad]
 
-Vector<2> left_of(const Vector<2>& v) { return {{-v[1], v[0]}}; }
-
 /// The angle from one direction to another, counter-clockwise positive [rad].
-double angle_between(const Vector<2>& from, const Vector<2>& to) {
-  return std::atan2(dot(left_of(from), to), dot(from, to));
-}
+double angle_between(const Vector<2>& from, const Vector<2>& to) { return std::atan2(cross(from, to), dot(from, to)); }
 
 OutlineEdge reversed(OutlineEdge edge) {
   std::swap(edge.begin, edge.end);
@@ -46,7 +42,7 @@ OutlineEdge last_part(const OutlineEdge& edge, double share) {
   return reversed(first_part(reversed(edge), 1.0 - share));
 }
 
-Vector<2> tangent(const OutlineEdge& edge, double share) { return left_of(edge.normal(share)); }
+Vector<2> tangent(const OutlineEdge& edge, double share) { return turned_left(edge.normal(share)); }
 
 /// A wall's way from where the jet meets it. `side`: of the way, on which the fluid is: 1 right, -1 left.
 struct Arm {
@@ -167,14 +163,14 @@ class TargetSearch {
     if (!(std::abs(other.width - target_.width) <= 1e-9 * target_.width &&
           std::abs(other.speed - target_.speed) <= 1e-9 * target_.speed))
       refuse("its two jets are not equal");
-    if (!(apart > 0.0 && std::abs(dot(left_of(direction_), way)) <= symmetric * target_.width &&
+    if (!(apart > 0.0 && std::abs(cross(direction_, way)) <= symmetric * target_.width &&
           std::abs(angle_between(-1.0 * direction_, unit(other))) <= same_direction))
       refuse("its two inlets do not blow at each other");
     if (meeting(from_).distance < apart) refuse("a wall is between its two inlets");
     target_.type = TargetType::jet;
     target_.angle = 0.5 * pi;
     target_.distance = 0.5 * apart;
-    target_.frame = {.origin = from_ + 0.5 * apart * direction_, .x = left_of(direction_), .y = -1.0 * direction_};
+    target_.frame = {.origin = from_ + 0.5 * apart * direction_, .x = turned_left(direction_), .y = -1.0 * direction_};
     constexpr double far = 10.0;  // [H]
     const auto reach = [&](double sign) {
       return until_outlet([&](double x) { return target_.frame.origin + sign * x * target_.frame.x; },
@@ -251,13 +247,13 @@ class TargetSearch {
 
   void meet_wall() {
     // Beside the axis at both sides, so that it does not matter on which face an edge counts.
-    const Vector<2> beside = 1e-6 * target_.width * left_of(direction_);
+    const Vector<2> beside = 1e-6 * target_.width * turned_left(direction_);
     const Meeting left = meeting(from_ + beside), right = meeting(from_ - beside);
     if (std::isinf(left.distance) && std::isinf(right.distance)) refuse("its inlet's axis meets no wall");
     if (!(std::abs(left.distance - right.distance) <= symmetric * target_.width))
       refuse("its inlet's axis meets the end of a wall");
     target_.distance = 0.5 * (left.distance + right.distance);
-    target_.frame = {.origin = from_ + target_.distance * direction_, .x = direction_, .y = left_of(direction_)};
+    target_.frame = {.origin = from_ + target_.distance * direction_, .x = direction_, .y = turned_left(direction_)};
     // The fluid is on the right of the ways, before the wall: they run from left to right.
     Meeting start = right, end = left;
     start.point = end.point = target_.frame.origin;

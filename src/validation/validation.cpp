@@ -105,8 +105,6 @@ std::vector<std::string> differences_of(const FluidSettings& fluid, const JetTar
   return differences;
 }
 
-std::string_view word_of(TargetType type) { return words(type)[static_cast<std::size_t>(type)]; }
-
 nlohmann::json to_json(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nullptr; }
 
 /// A file that is written line by line.
@@ -204,10 +202,11 @@ std::optional<double> slope_of(const std::vector<double>& times, const std::vect
   const auto mean = [](const std::vector<double>& x) {
     return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
   };
+  const double mean_time = mean(times), mean_value = mean(values);
   double products = 0.0, squares = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
-    products += (times[k] - mean(times)) * (values[k] - mean(values));
-    squares += std::pow(times[k] - mean(times), 2);
+    products += (times[k] - mean_time) * (values[k] - mean_value);
+    squares += std::pow(times[k] - mean_time, 2);
   }
   return squares > 0.0 ? std::optional(products / squares) : std::nullopt;
 }

@@ -113,10 +113,23 @@ double determinant(const Matrix<Dim>& m) {
   return sum;
 }
 
+/// a x b: positive where b points to the left of a.
+inline double cross(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// Turned by 90 degrees, counter-clockwise.
+inline Vector<2> turned_left(const Vector<2>& a) { return {{-a[1], a[0]}}; }
+
 /// Axis-aligned box [m].
 template <int Dim>
 struct Box {
   Vector<Dim> low, high;
+
+  /// Corner k of 2^Dim: bit d of k says which end of axis d.
+  Vector<Dim> corner(int k) const {
+    Vector<Dim> result;
+    for (int axis = 0; axis < Dim; ++axis) result[axis] = (k >> axis) & 1 ? high[axis] : low[axis];
+    return result;
+  }
 };
 
 }  // namespace impinge

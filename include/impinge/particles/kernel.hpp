@@ -1,8 +1,6 @@
 #pragma once
 // The kernels of the paper and their sums on the full lattice.
 
-#include <cmath>
-
 namespace impinge {
 
 /// non_singular: Zhang & Wan (paper eq. 3); singular: Koshizuka & Oka (paper eq. 9).
@@ -38,9 +36,9 @@ decltype(auto) with_kernel(KernelType type, Use&& use) {
 template <int Dim, class Kernel>
 double packing_weight(double weight) {
   const double reach = Kernel::reach(weight);  // 1 - q
-  const double square = reach * reach;
-  if constexpr (Dim == 3) return square * square * std::pow(2.0 - reach, 4);
-  return square * square * (5.0 - 4.0 * reach);
+  const double base = Dim == 3 ? reach * (2.0 - reach) : reach;
+  const double square = base * base;
+  return Dim == 3 ? square * square : square * square * (5.0 - 4.0 * reach);
 }
 
 /// Sums over the neighbours of a particle on the full square or cubic lattice of spacing 1.
