@@ -2,6 +2,7 @@
 // Fields of all ranks on every rank, for the comparisons of the tests.
 
 #include <map>
+#include <numeric>
 
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/particles/particles.hpp"
@@ -13,9 +14,9 @@ template <class T>
 std::vector<T> gather(MPI_Comm comm, const std::vector<T>& own) {
   static_assert(std::is_trivially_copyable_v<T>);
   const int bytes = static_cast<int>(own.size() * sizeof(T));
-  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm))), starts(counts.size(), 0);
+  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm))), starts(counts.size());
   MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  for (std::size_t k = 1; k < counts.size(); ++k) starts[k] = starts[k - 1] + counts[k - 1];
+  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
   std::vector<T> all(static_cast<std::size_t>(starts.back() + counts.back()) / sizeof(T));
   MPI_Allgatherv(own.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, comm);
   return all;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "impinge/cases/make_simulation.hpp"
+#include "mpi/gather.hpp"
 
 namespace impinge {
 namespace {
@@ -34,6 +35,21 @@ Vector<2> force_on(const Simulation<2>& simulation, const Scene<2>& walls, int w
   }
   for (int k = 0; k < 2; ++k) force[k] = sum_over_ranks(comm, force[k]);
   return force;
+}
+
+/// Positions of the fluid of all ranks, by id. Collective.
+std::map<std::int64_t, Vector<2>> fluid_places(const Simulation<2>& simulation) {
+  struct Item {
+    std::int64_t id;
+    Vector<2> place;
+  };
+  std::vector<Item> own;
+  const Particles<2>& particles = simulation.particles();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+    if (particles.type[i] == ParticleType::fluid) own.push_back({particles.id[i], particles.position[i]});
+  std::map<std::int64_t, Vector<2>> places;
+  for (const Item& item : gather(comm, own)) places.emplace(item.id, item.place);
+  return places;
 }
 
 TEST(Walls, CarryTheWeightOfTheWaterInAVBottom) {
@@ -106,11 +122,7 @@ velocity = {0}
                               1.0, {"fluid.gravity=[0, -9.81]", "pressure.tolerance=1e-12", "time.dt=0.01"});
     auto simulation = make_simulation<2>(comm, config);
     for (int step = 0; step < 50; ++step) simulation.step();
-    const Particles<2>& particles = simulation.particles();
-    std::map<std::int64_t, Vector<2>> places;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
-      if (particles.type[i] == ParticleType::fluid) places[particles.id[i]] = particles.position[i];
-    return std::pair(simulation.report().time, places);
+    return std::pair(simulation.report().time, fluid_places(simulation));
   };
   const auto [time, at_rest] = after_50_steps("[0, 0]");
   const auto [same_time, moved] = after_50_steps("[0.7, -0.4]");  // twice the speed that would limit dt
@@ -201,19 +213,9 @@ high = [0.2, 0.1]
                             0.5);
   const Scene<2> walls = make_scene<2>(config, config);
   auto simulation = make_simulation<2>(comm, config);
-  std::map<std::int64_t, bool> left;
-  const auto for_fluid = [&](auto&& use) {
-    const Particles<2>& particles = simulation.particles();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
-      if (particles.type[i] == ParticleType::fluid) use(particles.id[i], particles.position[i][0] < 0.0);
-  };
-  for_fluid([&](std::int64_t id, bool is_left) { left[id] = is_left; });
+  const auto start = fluid_places(simulation);
   while (simulation.report().time < config.time.end - 1e-9) simulation.step();
-  for_fluid([&](std::int64_t id, bool is_left) {
-    const auto found = left.find(id);
-    if (found == left.end()) return;  // it came from another rank
-    EXPECT_EQ(found->second, is_left);
-  });
+  for (const auto& [id, place] : fluid_places(simulation)) EXPECT_EQ(place[0] < 0.0, start.at(id)[0] < 0.0);
   EXPECT_NEAR(force_on(simulation, walls, 1)[0], rho * gravity * (0.2 * 0.2 - 0.1 * 0.1) / 2.0, 2.0);
 }
 
