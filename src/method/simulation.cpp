@@ -38,6 +38,21 @@ State<Dim> make_state(MPI_Comm comm, const MethodSettings& settings, const Scene
           .role = {}};
 }
 
+// A free surface that faces a wall nearer than a spacing and a half is a gap between the fluid's lattice and the wall:
+// it closes as any other. Collective.
+template <int Dim>
+void leave_out_gaps(double spacing, State<Dim>& state) {
+  Particles<Dim>& particles = state.particles;
+  for (std::size_t i = 0; i < state.owned(); ++i) {
+    const double size = norm(state.asymmetry[i]);
+    if (!particles.free_surface[i] || size == 0.0) continue;
+    const Vector<Dim>& from = particles.position[i];
+    const Vector<Dim> to = from + 1.5 * spacing / size * state.asymmetry[i];
+    if (state.walls.faces().line_factor(from, to) == 0.0) particles.free_surface[i] = 0;
+  }
+  state.refresh(particles.free_surface);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -71,6 +86,7 @@ void Simulation<Dim>::settle() {
   const ShiftingSettings shifting{.coefficient = 1.0, .least_distance = 0.9, .correct_velocity = true};
   const double spacing = settings_.particles.spacing;
   for (int pass = 0; pass < passes; ++pass) {
+    leave_out_gaps(spacing, state_);
     const double n0 = projection_.lattice().number_density;
     const std::vector<Matrix<Dim>> gradient = velocity_gradients(n0, state_);
     const Shift<Dim> shift = shift_of<Dim>(shifting, way * spacing, 1.0, spacing, n0, gradient, state_);
