@@ -1,6 +1,7 @@
 #include "impinge/method/density.hpp"
 
 #include "impinge/method/operators.hpp"
+#include "impinge/method/smoothing.hpp"
 
 namespace impinge {
 namespace {
@@ -41,12 +42,13 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
   const FreeSurfaceSettings& limits = settings.free_surface;
   const bool walls_measure = settings.walls.model == WallModel::mirror;
   const PressureSettings& pressure = settings.pressure;
-  const bool corrects = pressure.corrected_divergence || pressure.corrected_gradient;
+  const bool corrects =
+      pressure.corrected_divergence || pressure.corrected_gradient || needs_velocity_gradients(settings);
   const bool needs_all_asymmetries = needs_asymmetry(settings);
   number_density(near, particles.number_density);
   state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);
   state.asymmetry.assign(particles.position.size(), {});
-  if (corrects) state.correction.assign(state.owned(), Matrix<Dim>::identity());
+  if (corrects) state.correction.assign(state.owned(), {});
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     const ParticleType type = particles.type[self];

@@ -1,5 +1,7 @@
 #include "impinge/method/motion.hpp"
 
+#include <algorithm>
+
 #include "impinge/method/operators.hpp"
 
 namespace impinge {
@@ -35,11 +37,13 @@ void collide(const CollisionSettings& settings, double spacing, double dt, State
   state.refresh_positions();
   state.refresh_velocities();
   const double distance = settings.distance * spacing;
+  double fastest = 0.0;  // of those that this rank sees
+  for (const Vector<Dim>& velocity : particles.velocity) fastest = std::max(fastest, norm(velocity));
   std::vector<Vector<Dim>> change(state.owned());
   for (std::size_t i = 0; i < change.size(); ++i)
     if (state.moves(i))
       change[i] = collision<Dim>(state.near(), particles.position, particles.velocity, particles.type,
-                                 state.wall_normal, dt, distance, settings.restitution, static_cast<int>(i));
+                                 state.wall_normal, dt, distance, settings.restitution, fastest, static_cast<int>(i));
   for (std::size_t i = 0; i < change.size(); ++i) particles.velocity[i] += change[i];
 }
 

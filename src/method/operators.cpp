@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "impinge/method/surface.hpp"
+#include "impinge/particles/lanes.hpp"
 
 namespace impinge {
 namespace {
@@ -20,24 +21,32 @@ constexpr double least_surface_determinant = 0.3;
 constexpr double surface_point_weight = 0.5;
 
 template <int Dim>
-Matrix<Dim> inverse_or(const Matrix<Dim>& moment, const Matrix<Dim>& other) {
-  const double size = determinant(moment);
-  return size < least_determinant ? other : 1.0 / size * adjugate(moment);
+Matrix<Dim> or_identity(const Matrix<Dim>& correction) {
+  return correction == Matrix<Dim>{} ? Matrix<Dim>::identity() : correction;
+}
+
+/// Where the neighbours stand from a particle at `centre` [m].
+template <int Dim>
+[[gnu::always_inline]] inline Vector<Dim, Lanes> offsets(std::span<const Vector<Dim>> position, const int* j,
+                                                         const Vector<Dim>& centre) {
+  return gathered(position, j) - spread(centre);
 }
 
 // Of a pair's force: along the pair, but along the normal of a wall, which is smooth.
 template <int Dim>
-Vector<Dim> push_direction(const Vector<Dim>& offset, ParticleType type, const Vector<Dim>& wall_normal) {
-  return type == ParticleType::wall ? dot(offset, wall_normal) * wall_normal : offset;
+Vector<Dim> push_direction(const Vector<Dim>& offset, ParticleType type, std::span<const Vector<Dim>> wall_normal,
+                           std::size_t j) {
+  return type == ParticleType::wall ? dot(offset, wall_normal[j]) * wall_normal[j] : offset;
 }
 
 }  // namespace
 
 void number_density(const PairList& near, std::span<double> density) {
   for (int i = 0; i < near.rows(); ++i) {
-    double sum = 0.0;
-    for_pairs(near, i, [&](std::size_t, double weight) { sum += weight; });
-    density[static_cast<std::size_t>(i)] = sum;
+    Lanes sum{};
+    for_lanes(
+        near, i, [&](const int*, const Lanes& weight) __attribute__((always_inline)) { sum += weight; });
+    density[static_cast<std::size_t>(i)] = reduced(sum);
   }
 }
 
@@ -60,24 +69,28 @@ double packing(const PairList& near, std::span<const Vector<Dim>> position, Kern
 
 template <int Dim>
 Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i) {
-  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
-  Vector<Dim> sum;
-  for_pairs(near, i, [&](std::size_t j, double weight) {
-    const Vector<Dim> offset = centre - position[j];
-    sum += weight / norm(offset) * offset;
-  });
-  return Dim / n0 * sum;
+  const Vector<Dim>& centre = position[static_cast<std::size_t>(i)];
+  Vector<Dim, Lanes> sum;
+  for_lanes(
+      near, i, [&](const int* j, const Lanes& weight) __attribute__((always_inline)) {
+        const Vector<Dim, Lanes> offset = offsets(position, j, centre);
+        sum -= weight / square_root(dot(offset, offset)) * offset;
+      });
+  return Dim / n0 * reduced(sum);
 }
 
 template <int Dim>
 Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i) {
-  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
-  Matrix<Dim> moment;
-  for_pairs(near, i, [&](std::size_t j, double weight) {
-    const Vector<Dim> offset = position[j] - centre;
-    moment.add_product(Dim / n0 * weight / dot(offset, offset) * offset, offset);
-  });
-  return inverse_or(moment, Matrix<Dim>::identity());
+  const Vector<Dim>& centre = position[static_cast<std::size_t>(i)];
+  Matrix<Dim, Lanes> sum;
+  for_lanes(
+      near, i, [&](const int* j, const Lanes& weight) __attribute__((always_inline)) {
+        const Vector<Dim, Lanes> offset = offsets(position, j, centre);
+        sum.add_product(weight / dot(offset, offset) * offset, offset);
+      });
+  const Matrix<Dim> moment = Dim / n0 * reduced(sum);
+  const double size = determinant(moment);
+  return size < least_determinant ? Matrix<Dim>{} : 1.0 / size * adjugate(moment);
 }
 
 template <int Dim>
@@ -99,32 +112,44 @@ Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>>
                               std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
                               const Matrix<Dim>& correction, double n0, int i) {
   const auto self = static_cast<std::size_t>(i);
-  const Vector<Dim> centre = position[self];
-  const Vector<Dim> own = velocity[self];
-  Matrix<Dim> sum;
-  for_pairs(near, i, [&](std::size_t j, double weight) {
-    const Vector<Dim> offset = position[j] - centre;
-    Vector<Dim> relative = velocity[j] - own;
-    const Vector<Dim> normal = wall_normal[self] + wall_normal[j];
-    const double square = dot(normal, normal);
-    if (square > 0.0) relative = dot(relative, normal) / square * normal;
-    sum.add_product(relative, Dim / n0 * weight / dot(offset, offset) * offset);
-  });
-  for (Vector<Dim>& row : sum.row) row = correction * row;  // which is symmetric
-  return sum;
+  const Vector<Dim>& centre = position[self];
+  const Vector<Dim, Lanes> own = spread(velocity[self]);
+  Matrix<Dim, Lanes> sum;
+  const auto add_pairs = [&](auto&& counted) {
+    for_lanes(
+        near, i, [&](const int* j, const Lanes& weight) __attribute__((always_inline)) {
+          const Vector<Dim, Lanes> offset = offsets(position, j, centre);
+          sum.add_product(counted(j, gathered(velocity, j) - own), weight / dot(offset, offset) * offset);
+        });
+  };
+  if (wall_normal.empty()) {
+    add_pairs([](const int*, const Vector<Dim, Lanes>& relative) { return relative; });
+  } else {
+    add_pairs([&](const int* j, Vector<Dim, Lanes> relative) {
+      const Vector<Dim, Lanes> normal = spread(wall_normal[self]) + gathered(wall_normal, j);
+      const Lanes square = dot(normal, normal), share = dot(relative, normal) / square;
+      for (int k = 0; k < Dim; ++k) relative[k] = square > 0.0 ? share * normal[k] : relative[k];
+      return relative;
+    });
+  }
+  Matrix<Dim> slope = Dim / n0 * reduced(sum);
+  const Matrix<Dim> applied = or_identity(correction);
+  for (Vector<Dim>& row : slope.row) row = applied * row;  // which is symmetric
+  return slope;
 }
 
 template <int Dim>
 Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                                std::span<const double> pressure, double base, const Matrix<Dim>& correction, double n0,
                                int i) {
-  const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
-  Vector<Dim> sum;
-  for_pairs(near, i, [&](std::size_t j, double weight) {
-    const Vector<Dim> offset = position[j] - centre;
-    sum += (pressure[j] - base) * weight / dot(offset, offset) * offset;
-  });
-  return Dim / n0 * (correction * sum);
+  const Vector<Dim>& centre = position[static_cast<std::size_t>(i)];
+  Vector<Dim, Lanes> sum;
+  for_lanes(
+      near, i, [&](const int* j, const Lanes& weight) __attribute__((always_inline)) {
+        const Vector<Dim, Lanes> offset = offsets(position, j, centre);
+        sum += (gathered(pressure, j) - base) * weight / dot(offset, offset) * offset;
+      });
+  return Dim / n0 * (or_identity(correction) * reduced(sum));
 }
 
 template <int Dim>
@@ -140,27 +165,6 @@ Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> positio
     if (overlap > 0.0 && r > 0.0) push += overlap / r * offset;
   });
   return push;
-}
-
-template <int Dim>
-Matrix<Dim> fluid_velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
-                                    std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                                    double n0, int i) {
-  const auto self = static_cast<std::size_t>(i);
-  const Vector<Dim> centre = position[self];
-  const Vector<Dim> own = velocity[self];
-  Matrix<Dim> moment;
-  Matrix<Dim> slope;
-  for_pairs(near, i, [&](std::size_t j, double weight) {
-    if (type[j] == ParticleType::wall || type[j] == ParticleType::ghost) return;
-    const Vector<Dim> offset = position[j] - centre;
-    const Vector<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
-    moment.add_product(weighted, offset);
-    slope.add_product(velocity[j] - own, weighted);
-  });
-  const Matrix<Dim> inverse = inverse_or(moment, Matrix<Dim>{});
-  for (Vector<Dim>& row : slope.row) row = inverse * row;  // which is symmetric
-  return slope;
 }
 
 template <int Dim>
@@ -181,14 +185,23 @@ template <int Dim>
 Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> position,
                        std::span<const Vector<Dim>> velocity, std::span<const Matrix<Dim>> gradient, double n0, int i) {
   const auto self = static_cast<std::size_t>(i);
-  Vector<Dim> sum;
-  if (gradient[self] == Matrix<Dim>{}) return sum;
+  if (gradient[self] == Matrix<Dim>{}) return {};
+  const Vector<Dim> centre = position[self];
+  const Vector<Dim> own = velocity[self];
+  Vector<Dim> differences, offsets;
+  Matrix<Dim> products;  // of the gradients' columns with the offsets' components
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (j >= gradient.size() || gradient[j] == Matrix<Dim>{}) return;
-    const Vector<Dim> offset = 0.5 * (position[j] - position[self]);
-    sum += weight * (velocity[j] - velocity[self] - gradient[self] * offset - gradient[j] * offset);
+    const Vector<Dim> offset = weight * (position[j] - centre);
+    differences += weight * (velocity[j] - own);
+    offsets += offset;
+    for (std::size_t k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l) products.row[k][l] += gradient[j].row[k][l] * offset[l];
   });
-  return 1.0 / n0 * sum;
+  Vector<Dim> linear = gradient[self] * offsets;
+  for (int k = 0; k < Dim; ++k)
+    for (int l = 0; l < Dim; ++l) linear[k] += products.row[static_cast<std::size_t>(k)][l];
+  return 1.0 / n0 * (differences - 0.5 * linear);
 }
 
 template <int Dim>
@@ -251,7 +264,7 @@ Vector<Dim> pressure_gradient(const PairList& near, std::span<const Vector<Dim>>
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (type[j] == ParticleType::ghost) return;
     const Vector<Dim> offset = position[j] - centre;
-    sum += (pressure[j] + own) * weight / dot(offset, offset) * push_direction<Dim>(offset, type[j], wall_normal[j]);
+    sum += (pressure[j] + own) * weight / dot(offset, offset) * push_direction<Dim>(offset, type[j], wall_normal, j);
   });
   return Dim / n0 * sum;
 }
@@ -268,17 +281,19 @@ Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> 
 template <int Dim>
 Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
                       std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution, int i) {
+                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution,
+                      double fastest, int i) {
   const auto self = static_cast<std::size_t>(i);
-  const Vector<Dim> centre = position[self];
-  const Vector<Dim> own = velocity[self];
+  const Vector<Dim>& centre = position[self];
+  const Vector<Dim>& own = velocity[self];
+  const double within = distance + 2.0 * dt * fastest;
   Vector<Dim> change;
   for_pairs(near, i, [&](std::size_t j, double) {
-    if (type[j] == ParticleType::ghost) return;
     const Vector<Dim> offset = position[j] - centre;
+    if (dot(offset, offset) > within * within || type[j] == ParticleType::ghost) return;
     const Vector<Dim> relative = own - velocity[j];
     const Vector<Dim> next = offset - dt * relative;
-    const Vector<Dim> direction = push_direction<Dim>(offset, type[j], wall_normal[j]);
+    const Vector<Dim> direction = push_direction<Dim>(offset, type[j], wall_normal, j);
     const double approach = dot(relative, direction);
     if (approach <= 0.0 || dot(next, next) >= distance * distance) return;
     const double share = type[j] == ParticleType::fluid ? 0.5 : 1.0;
@@ -303,9 +318,6 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
                                                double, const Matrix<Dim>&, double, int);                               \
   template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \
                                       double, double, int);                                                            \
-  template Matrix<Dim> fluid_velocity_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,                     \
-                                                    std::span<const Vector<Dim>>, std::span<const ParticleType>,       \
-                                                    double, int);                                                      \
   template Vector<Dim> limited_change<Dim>(const PairList&, std::span<const Vector<Dim>>,                              \
                                            std::span<const ParticleType>, const Vector<Dim>&, int);                    \
   template Vector<Dim> off_linear<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,    \
@@ -316,7 +328,7 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
   template Vector<Dim> velocity_laplacian<Dim>(const PairRow&, std::span<const Vector<Dim>>, double, int);             \
   template Vector<Dim> collision<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,     \
                                       std::span<const ParticleType>, std::span<const Vector<Dim>>, double, double,     \
-                                      double, int);
+                                      double, double, int);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)
 #undef IMPINGE_INSTANTIATE

@@ -353,10 +353,10 @@ void Simulation<Dim>::migrate() {
   if (sum_over_ranks(comm_, strays.outside + strays.not_finite) > 0) count_strays(strays);
   state_.decomposition.build_halo(particles);
   state_.walls.append_images(particles);
+  if (settings_.walls.model == WallModel::mirror) return;
   state_.wall_normal.assign(particles.position.size(), {});
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (particles.type[i] == ParticleType::wall && scene_.walls.empty())
-      state_.wall_normal[i] = scene_.wall_normal(particles.position[i]);
+    if (particles.type[i] == ParticleType::wall) state_.wall_normal[i] = scene_.wall_normal(particles.position[i]);
 }
 
 template <int Dim>
@@ -369,7 +369,6 @@ void Simulation<Dim>::find_neighbours() {
     state_.walls.append_own_images(
         [&](int i) { return search.around(i, particles.position[static_cast<std::size_t>(i)]); }, particles);
     search.find(particles, scene_.walls.empty() ? nullptr : &state_.walls);
-    state_.wall_normal.resize(particles.position.size());
   }
   const PhaseLog log(Phase::density);
   measure_density(settings_, projection_.lattice(), state_);

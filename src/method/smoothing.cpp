@@ -15,9 +15,9 @@ std::vector<Matrix<Dim>> velocity_gradients(double n0, State<Dim>& state) {
   state.refresh_velocities();
   std::vector<Matrix<Dim>> gradient(state.role.size());
   for (std::size_t i = 0; i < state.owned(); ++i)
-    if (state.moves(i) && !is_spray(particles, n0, i))
-      gradient[i] = fluid_velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, particles.type,
-                                                 n0, static_cast<int>(i));
+    if (state.moves(i) && !is_spray(particles, n0, i) && state.correction[i] != Matrix<Dim>{})
+      gradient[i] = velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
+                                           state.correction[i], n0, static_cast<int>(i));
   state.decomposition.halo().refresh(gradient, particles.owned);
   return gradient;
 }

@@ -6,13 +6,13 @@
 
 namespace impinge {
 
-/// A point or vector in Dim dimensions [unit of its use].
-template <int Dim>
+/// A point or vector in Dim dimensions [unit of its use]; of one number each, or of several side by side (Lanes).
+template <int Dim, class Number = double>
 struct Vector {
-  std::array<double, Dim> component{};
+  std::array<Number, Dim> component{};
 
-  double& operator[](int k) { return component[static_cast<std::size_t>(k)]; }
-  double operator[](int k) const { return component[static_cast<std::size_t>(k)]; }
+  Number& operator[](int k) { return component[static_cast<std::size_t>(k)]; }
+  Number operator[](int k) const { return component[static_cast<std::size_t>(k)]; }
 
   Vector& operator+=(const Vector& other) {
     for (int k = 0; k < Dim; ++k) (*this)[k] += other[k];
@@ -22,19 +22,19 @@ struct Vector {
     for (int k = 0; k < Dim; ++k) (*this)[k] -= other[k];
     return *this;
   }
-  Vector& operator*=(double factor) {
+  Vector& operator*=(Number factor) {
     for (int k = 0; k < Dim; ++k) (*this)[k] *= factor;
     return *this;
   }
   friend Vector operator+(Vector a, const Vector& b) { return a += b; }
   friend Vector operator-(Vector a, const Vector& b) { return a -= b; }
-  friend Vector operator*(double factor, Vector a) { return a *= factor; }
+  friend Vector operator*(Number factor, Vector a) { return a *= factor; }
   friend bool operator==(const Vector&, const Vector&) = default;
 };
 
-template <int Dim>
-double dot(const Vector<Dim>& a, const Vector<Dim>& b) {
-  double sum = 0.0;
+template <int Dim, class Number>
+Number dot(const Vector<Dim, Number>& a, const Vector<Dim, Number>& b) {
+  Number sum{};
   for (int k = 0; k < Dim; ++k) sum += a[k] * b[k];
   return sum;
 }
@@ -45,9 +45,9 @@ double norm(const Vector<Dim>& a) {
 }
 
 /// A Dim x Dim matrix by rows [unit of its use].
-template <int Dim>
+template <int Dim, class Number = double>
 struct Matrix {
-  std::array<Vector<Dim>, Dim> row{};
+  std::array<Vector<Dim, Number>, Dim> row{};
 
   static Matrix identity() {
     Matrix result;
@@ -56,17 +56,17 @@ struct Matrix {
   }
 
   /// Adds a b^T.
-  void add_product(const Vector<Dim>& a, const Vector<Dim>& b) {
+  void add_product(const Vector<Dim, Number>& a, const Vector<Dim, Number>& b) {
     for (int k = 0; k < Dim; ++k) row[static_cast<std::size_t>(k)] += a[k] * b;
   }
 
   friend bool operator==(const Matrix&, const Matrix&) = default;
-  friend Matrix operator*(double factor, Matrix m) {
-    for (Vector<Dim>& r : m.row) r *= factor;
+  friend Matrix operator*(Number factor, Matrix m) {
+    for (Vector<Dim, Number>& r : m.row) r *= factor;
     return m;
   }
-  friend Vector<Dim> operator*(const Matrix& m, const Vector<Dim>& v) {
-    Vector<Dim> result;
+  friend Vector<Dim, Number> operator*(const Matrix& m, const Vector<Dim, Number>& v) {
+    Vector<Dim, Number> result;
     for (int k = 0; k < Dim; ++k) result[k] = dot(m.row[static_cast<std::size_t>(k)], v);
     return result;
   }

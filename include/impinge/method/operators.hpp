@@ -28,8 +28,9 @@ double packing(const PairList& near, std::span<const Vector<Dim>> position, Kern
 template <int Dim>
 Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 
-/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice;
-/// where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface), L_i is the identity, too.
+/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice.
+/// Where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface), L_i is zero; what it is
+/// given to then does without.
 template <int Dim>
 Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 
@@ -39,9 +40,9 @@ double divergence(const PairList& near, std::span<const Vector<Dim>> position, s
                   double n0, int i);
 
 /// Corrected velocity gradient Dim/n0 sum (u_j - u_i) (L_i r_ij)^T W / r_ij^2 [1/s], row k that of component k; exact
-/// on linear velocities, and its trace is the divergence. Walls let the fluid slip: of a pair with a wall, whose normal
-/// `wall_normal` has for its particles and ghosts and which is zero elsewhere, only the relative velocity along the
-/// normal counts.
+/// on linear velocities, and its trace is the divergence. Walls of particles let the fluid slip: of a pair with a wall,
+/// whose normal `wall_normal` has for its particles and ghosts and which is zero elsewhere, only the relative velocity
+/// along the normal counts. `wall_normal` is empty where no wall has particles.
 template <int Dim>
 Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                               std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
@@ -80,13 +81,6 @@ template <int Dim>
 Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> position, std::span<const ParticleType> type,
                       double distance, double spacing, int i);
 
-/// Velocity gradient by least squares over the neighbours that are no wall [1/s], row k that of component k; exact on
-/// linear velocities, zero where the neighbours are too few.
-template <int Dim>
-Matrix<Dim> fluid_velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
-                                    std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                                    double n0, int i);
-
 /// A change of velocity [m/s], made smaller where the new velocity along it would pass the largest of the neighbours
 /// that are no wall: in spray an extrapolation would feed on itself.
 template <int Dim>
@@ -117,10 +111,12 @@ Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> 
 /// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
 /// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
 /// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
-/// not yield. A wall is smooth: the normal of a pair with it is the wall's.
+/// not yield. A wall is smooth: the normal of a pair with it is the wall's. `fastest`: no particle's speed is larger
+/// [m/s].
 template <int Dim>
 Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
                       std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
-                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution, int i);
+                      std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution,
+                      double fastest, int i);
 
 }  // namespace impinge

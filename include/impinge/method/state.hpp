@@ -20,7 +20,7 @@ struct State {
   Decomposition<Dim> decomposition;
   MirrorWalls<Dim> walls;
   NeighbourSearch<Dim> search;
-  std::vector<Vector<Dim>> wall_normal;  ///< zero but at wall particles; all particles
+  std::vector<Vector<Dim>> wall_normal;  ///< zero but at wall particles; all particles. Empty if walls are mirrors
 
   // Measured with the neighbours, see measure_density.
   std::vector<Vector<Dim>> asymmetry;   ///< F_i; all particles
