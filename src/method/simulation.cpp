@@ -83,12 +83,14 @@ template <int Dim>
 void Simulation<Dim>::settle() {
   constexpr int passes = 60;
   constexpr double way = 0.25;  // over the asymmetry [dp]
-  const ShiftingSettings shifting{.coefficient = 1.0, .least_distance = 0.9, .correct_velocity = true};
+  const ShiftingSettings shifting{
+      .coefficient = 1.0, .least_distance = 0.9, .correct_velocity = needs_velocity_gradients(settings_)};
   const double spacing = settings_.particles.spacing;
   for (int pass = 0; pass < passes; ++pass) {
     leave_out_gaps(spacing, state_);
     const double n0 = projection_.lattice().number_density;
-    const std::vector<Matrix<Dim>> gradient = velocity_gradients(n0, state_);
+    std::vector<Matrix<Dim>> gradient;
+    if (shifting.correct_velocity) gradient = velocity_gradients(n0, state_);
     const Shift<Dim> shift = shift_of<Dim>(shifting, way * spacing, 1.0, spacing, n0, gradient, state_);
     for (std::size_t i = 0; i < shift.displacement.size(); ++i) {
       state_.particles.position[i] += shift.displacement[i];

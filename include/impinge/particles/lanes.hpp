@@ -14,8 +14,6 @@ namespace impinge {
 /// One number for each of eight pairs: GCC's and Clang's vectors, which every processor has in some way.
 using Lanes [[gnu::vector_size(64)]] = double;
 constexpr int lane_count = 8;
-/// Indices of as many particles.
-using LaneIndex = std::array<int, lane_count>;
 
 /// A number of each lane.
 template <class Value>
@@ -23,8 +21,8 @@ template <class Value>
   return Lanes{value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
 }
 
-/// Calls use(j, W_ij) for the pairs of particle i, several at a time: their indices and weights. What is left of the
-/// lanes at the row's end repeats its first pair with weight 0.
+/// Calls use(j, W_ij) for the pairs of particle i, several at a time: their indices and weights. The lanes that are
+/// left at the row's end repeat its first pair with weight 0. `use` must be inlined for the sums to stay in registers.
 template <class Use>
 [[gnu::always_inline]] inline void for_lanes(const PairList& list, int i, Use&& use) {
   const int begin = list.begin(i), end = list.end(i);
@@ -32,7 +30,7 @@ template <class Use>
   const double* const weight = list.weight.data();
   for (int k = begin; k < end; k += lane_count) {
     const int count = std::min(lane_count, end - k);
-    LaneIndex rest;
+    std::array<int, lane_count> rest;
     std::array<double, lane_count> rest_weight{};
     if (count < lane_count) {
       rest.fill(index[begin]);
