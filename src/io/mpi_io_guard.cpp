@@ -11,13 +11,16 @@
 namespace impinge {
 namespace {
 
-/// Ends the job where a call that writes the shared file failed on this rank.
+/// Ends the job where a call that writes the shared file failed on this rank. The system gives no reason where it
+/// writes a part of what it was given.
 int end_job_unless(bool done, int code) {
   const SharedFile* file = SharedFile::current();
   if (done || file == nullptr) return code;
   const int reason = errno;
   fmt::print(stderr, "impinge: rank {}: cannot write {}: {}\n", rank_of(file->comm()), file->path(),
-             reason != 0 ? std::strerror(reason) : "MPI-IO failed");
+             reason != 0           ? std::strerror(reason)
+             : code == MPI_SUCCESS ? "no space left on device, or beyond the limit of a file's size"
+                                   : "MPI-IO failed");
   std::fflush(nullptr);
   MPI_Abort(file->comm(), 1);
   return code;

@@ -168,4 +168,22 @@ void check_method(Keys& keys, const MethodSettings& s) {
   }
 }
 
+std::vector<std::string> scheme_warnings(const MethodSettings& s) {
+  std::vector<std::string> warnings;
+  if (s.scheme == Scheme::paper) return warnings;
+  const auto warn_if = [&](bool off, const char* text) {
+    if (off) warnings.emplace_back(text);
+  };
+  warn_if(s.walls.model == WallModel::particles,
+          "walls.model = \"particles\": with scheme = \"consistent\", water at rest explodes between such walls");
+  warn_if(!s.free_surface.zero_outside,
+          "free_surface.zero_outside = false: with scheme = \"consistent\", water at rest boils from its surface");
+  warn_if(
+      s.shifting.coefficient == 0.0,
+      "shifting.coefficient = 0: with scheme = \"consistent\", particles line up and the pressure of a jet is noise");
+  warn_if(s.collision.distance == 0.0,
+          "collision.distance = 0: with scheme = \"consistent\", an impact can diverge where particles come close");
+  return warnings;
+}
+
 }  // namespace impinge

@@ -239,6 +239,10 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
   }
   if (!std::ranges::all_of(scene_.inlets, &Inlet<Dim>::is_in_place))
     throw FileError("the checkpoint's inlet is elsewhere");
+  bool has_strange_wall = false;
+  for (std::size_t i = 0; i < state_.owned(); ++i)
+    has_strange_wall |= is_wall_point(i) && static_cast<std::uint64_t>(particles.id[i]) >= scene_.wall_points.size();
+  if (any_rank(comm_, has_strange_wall)) throw FileError("a wall particle of the checkpoint is on no wall");
   state_.walls.move_to(wall_times_.place, wall_times_.velocity);
   // The positions at the end of the step go the particles' way in the place of velocities.
   Particles<Dim> later = particles;

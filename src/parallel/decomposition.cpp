@@ -45,7 +45,7 @@ std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std
     graph.vertex_weight.push_back(work[cell]);
   }
   for (const int cell : cell_of) {
-    if (!needs_edges(comm, partitioner)) break;
+    if (!needs_edges(comm, parts, partitioner)) break;
     for_cells_around(cells, cell, 1, [&](int neighbour, const Vector<Dim>&) {
       const auto n = static_cast<std::size_t>(neighbour);
       if (vertex_of[n] < 0 || neighbour == cell) return;

@@ -80,8 +80,8 @@ void declare_parallel(Keys& keys, ParallelSettings& settings) {
            {.range = from_to(1, 100)});
 }
 
-bool needs_edges(MPI_Comm comm, Partitioner partitioner) {
-  return partitioner == Partitioner::ptscotch || rank_of(comm) == 0;
+bool needs_edges(MPI_Comm comm, int parts, Partitioner partitioner) {
+  return parts > 1 && (partitioner == Partitioner::ptscotch || rank_of(comm) == 0);
 }
 
 std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner) {

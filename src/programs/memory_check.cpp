@@ -102,19 +102,22 @@ void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles) {
 }
 
 template <int Dim>
-void check_memory_of_plan(MPI_Comm comm, const Case& config) {
+void check_memory_of_plan(MPI_Comm comm, const Case& config, int ranks) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
-  const double need = cells_of(scene, config) * plan_of_a_cell;
+  const double particles = count(scene).particles;
+  const double occupied_cells = particles / std::pow(config.kernel.cell_edge(), Dim);
+  const double graph = ranks > 1 ? occupied_cells * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1) : 0.0;
+  const double need = cells_of(scene, config) * plan_of_a_cell + graph + libraries;
   const double free = free_memory(comm);
   if (need > free)
-    refuse(config, count(scene).particles, need, free, config.particles.spacing * std::pow(need / free, 1.0 / Dim),
+    refuse(config, particles, need, free, config.particles.spacing * std::pow(need / free, 1.0 / Dim),
            ", or fewer processes");
 }
 
 #define IMPINGE_INSTANTIATE(Dim)                                        \
   template MemoryNeed memory_need<Dim>(const Case&, int, std::int64_t); \
   template void check_memory<Dim>(MPI_Comm, const Case&, std::int64_t); \
-  template void check_memory_of_plan<Dim>(MPI_Comm, const Case&);
+  template void check_memory_of_plan<Dim>(MPI_Comm, const Case&, int);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)
 #undef IMPINGE_INSTANTIATE

@@ -91,8 +91,10 @@ std::vector<std::string> region_lines(const Case& config) {
   return lines;
 }
 
-void print_warnings(const SceneReport& report) {
-  for (const std::string& text : report.warnings) fmt::print(stderr, "impinge: warning: {}\n", text);
+/// Of the scheme and the scene.
+void print_warnings(const Case& config, const SceneReport& report) {
+  for (const auto& texts : {scheme_warnings(config), report.warnings})
+    for (const std::string& text : texts) fmt::print(stderr, "impinge: warning: {}\n", text);
 }
 
 /// Regions, walls, motions, openings and what is observed, a line each, and warnings.
@@ -101,7 +103,7 @@ void print_scene(const Case& config) {
   const SceneReport report = report_scene(config, config);
   for (const auto& lines : {region_lines<Dim>(config), report.lines, observer_lines(config, Dim)})
     for (const std::string& line : lines) fmt::print("{}\n", line);
-  print_warnings(report);
+  print_warnings(config, report);
 }
 
 /// Writes the scene for ParaView and draws it. Collective; throws FileError.
@@ -354,7 +356,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
   if (first)
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
-  if (first) print_warnings(report_scene(config, config));
+  if (first) print_warnings(config, report_scene(config, config));
   output.save(simulation, "running");
   return run(comm, config, simulation, observers, output);
 }
@@ -449,7 +451,7 @@ void check_case(MPI_Comm comm, const Case& config) {
 void plan_case(MPI_Comm comm, const Case& config, int ranks) {
   refuse_unused_options(comm, {});
   with_dimension(config, [&](auto dimension) {
-    check_memory_of_plan<dimension()>(comm, config);
+    check_memory_of_plan<dimension()>(comm, config, ranks);
     const Plan plan = plan_run<dimension()>(comm, config, ranks);
     if (rank_of(comm) == 0) print_plan(config, plan);
   });

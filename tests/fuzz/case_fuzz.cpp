@@ -1,8 +1,10 @@
 // Fuzzes the reader of case files: whatever the text, it gives a case or an InputError; and the resolved text of a case
-// that it takes reads back to the same case.
+// that it takes reads back to the same case. What --check tells of the case's scene can be told.
 //
 // The input is a case file and what belongs to it, parted by lines of "#--": a part that begins with the line "#set"
-// has a setting in each further line; the other parts are the files case.toml, 1.toml, 2.toml, ...
+// has a setting in each further line; the other parts are the files case.toml, 1.toml, 2.toml, ..., one that begins
+// with
+// "#csv" is 1.csv, 2.csv, ...
 
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +18,8 @@
 
 #include "fuzz_directory.hpp"
 #include "impinge/cases/case.hpp"
+#include "impinge/observe/observer_report.hpp"
+#include "impinge/scenes/scene_report.hpp"
 
 namespace {
 
@@ -59,13 +63,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::istringstream lines{std::string(part.substr(5))};
       for (std::string line; std::getline(lines, line);) settings.push_back(line);
     } else {
-      files.push_back(directory.path() / (files.empty() ? "case.toml" : std::to_string(files.size()) + ".toml"));
+      const std::string number = std::to_string(files.size());
+      files.push_back(directory.path() / (files.empty()                ? "case.toml"
+                                          : part.starts_with("#csv\n") ? number + ".csv"
+                                                                       : number + ".toml"));
       std::ofstream(files.back(), std::ios::binary) << part;
     }
   }
   try {
     const std::vector<NamedText> texts = load_case_files(files.front());
-    expect_round_trip(parse_case(texts, settings));
+    const Case config = parse_case(texts, settings);
+    expect_round_trip(config);
+    report_scene(config, config);
+    observer_lines(config, config.dimension);
   } catch (const InputError& error) {
     if (error.mistakes().empty()) fail("an InputError without a mistake");
   }

@@ -2,7 +2,7 @@
 // FileError or SolveError, or a PetscFailure where hypre refuses a coarse matrix.
 //
 // The input is a list of changes to the checkpoint of a small jet, of twelve bytes each: see change(). The run goes on
-// for two steps.
+// for two steps. Where the first byte is 126 or more, the run is a scene with two inlets, an outlet and a moving wall.
 
 #include <mpi.h>
 
@@ -35,13 +35,26 @@ time = {end = 1.0, dt = 0.02}
   return config;
 }
 
-const Checkpoint<2>& sound_checkpoint() {
-  static const Checkpoint<2> state = [] {
-    auto simulation = make_simulation<2>(MPI_COMM_SELF, jet());
-    for (int step = 0; step < 3; ++step) simulation.step();
-    return simulation.checkpoint();
-  }();
-  return state;
+const Case& scene() {
+  static const Case config = parse_case({{"scene.toml", R"(geometry = "scene"
+particles.spacing = 0.1
+fluid.gravity = [0, -9.81]
+time = {end = 1.0, dt = 0.02}
+fluid.region = [{shape = "box", low = [0, 0], high = [1, 0.4]}]
+wall = [{name = "tank", shape = "polyline", points = [[0, 1.5], [0, 0], [1, 0], [1, 1.5]], wet = "left"},
+        {name = "plate", shape = "polyline", points = [[0.3, 0.2], [0.7, 0.2]], motion = "heave"}]
+motion = [{name = "heave", type = "harmonic", amplitude = [0, 0.05], frequency = 2.0}]
+inlet = [{name = "early", center = [0.2, 0.8], direction = [0, -1], width = 0.2, speed = 1.0},
+         {name = "late", center = [0.8, 0.8], direction = [0, -1], width = 0.2, speed = 1.0, start = 0.02}]
+outlet = [{name = "drain", shape = "box", low = [0.8, 0], high = [1, 0.2]}]
+)"}});
+  return config;
+}
+
+Checkpoint<2> checkpoint_of(const Case& config) {
+  auto simulation = make_simulation<2>(MPI_COMM_SELF, config);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  return simulation.checkpoint();
 }
 
 constexpr std::size_t change_size = 12;
@@ -146,14 +159,17 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const FuzzDirectory directory;
   const std::string path = directory.path() / "fuzz_00000003.checkpoint";
-  Checkpoint<2> state = sound_checkpoint();
+  static const Checkpoint<2> of_jet = checkpoint_of(jet()), of_scene = checkpoint_of(scene());
+  constexpr std::uint8_t first_of_scene = 126;
+  const bool is_scene = size > 0 && data[0] >= first_of_scene;
+  Checkpoint<2> state = is_scene ? of_scene : of_jet;
   for (; size >= change_size; data += change_size, size -= change_size)
     change(state, std::span<const std::uint8_t, change_size>(data, change_size));
   try {
     write_checkpoint(MPI_COMM_SELF, path, state,
                      {.dimension = 2, .status = "running", .message = "", .case_text = "", .code_version = {}});
     const auto from = read_checkpoint<2>(MPI_COMM_SELF, path);
-    auto simulation = make_simulation<2>(MPI_COMM_SELF, jet(), &from);
+    auto simulation = make_simulation<2>(MPI_COMM_SELF, is_scene ? scene() : jet(), &from);
     for (int step = 0; step < 2; ++step) simulation.step();
   } catch (const FileError&) {
   } catch (const SolveError&) {

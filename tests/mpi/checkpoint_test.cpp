@@ -263,6 +263,24 @@ TEST_F(Restart, RefusesWhatIsNoCheckpoint) {
             std::string::npos);
 }
 
+TEST_F(Restart, RefusesWallParticlesThatAreOnNoWall) {
+  const Case config = parse_case({{"case.toml", R"(geometry = "scene"
+particles.spacing = 0.1
+time = {end = 1.0, dt = 0.02}
+fluid.region = [{shape = "box", low = [0, 0], high = [1, 0.4]}]
+wall = [{shape = "box", low = [0, 0], high = [1, 1], wet = "inside", motion = "heave"}]
+motion = [{name = "heave", type = "harmonic", amplitude = [0, 0.05], frequency = 2.0}]
+)"}});
+  auto simulation = make_simulation<2>(MPI_COMM_WORLD, config);
+  simulation.step();
+  Checkpoint<2> state = simulation.checkpoint();
+  const auto failure = [&] { return failure_of([&] { make_simulation<2>(MPI_COMM_WORLD, config, &state); }); };
+  EXPECT_EQ(failure(), "");
+  for (std::size_t i = 0; i < state.particles.type.size(); ++i)
+    if (state.particles.type[i] == ParticleType::fluid) state.particles.type[i] = ParticleType::wall;
+  EXPECT_EQ(failure(), "a wall particle of the checkpoint is on no wall");
+}
+
 // Checksums match: someone has made these files.
 TEST_F(Restart, RefusesWhatNoRunHasSaved) {
   const Case config = jet_case({});

@@ -63,6 +63,9 @@ class Reliability(unittest.TestCase):
     def expect_the_same_run(self, out, expected):
         """Bitwise, but for the clock."""
         self.assertEqual(self.history(out), self.history(expected))
+        tables = [path for path in self.files(expected, "csv") if not path.stem.endswith("_history")]
+        for path in tables:
+            self.assertEqual((self.directory / out / path.name).read_text(), path.read_text(), path.name)
         snapshots = self.files(expected, "vtkhdf")
         self.assertEqual([path.name for path in self.files(out, "vtkhdf")], [path.name for path in snapshots])
         for path in snapshots:
@@ -247,9 +250,9 @@ class Signals(Reliability):
 class Faults(Reliability):
     """The third step of a run, broken off between any two system calls that write its files."""
 
-    WORDS = [word for setting in ("tank.size=[0.06,0.06]", "tank.fluid_height=0.04", "output.interval=1e-3",
-                                  "checkpoint.steps=1", "output.average_start=0") for word in ("--set", setting)]
-    CASE = ROOT / "input/hydrostatic.toml"
+    CASE = ROOT / "tests/system/basin.toml"
+    WORDS = [word for setting in ("particles.spacing=0.05", "output.interval=1e-3", "checkpoint.steps=1",
+                                  "output.average_start=0") for word in ("--set", setting)]
     END = ("--set", "time.end=3e-3")
     ERRORS = {errno.ENOSPC: "No space left on device", errno.EIO: "Input/output error",
               errno.EROFS: "Read-only file system"}
@@ -296,7 +299,7 @@ class Faults(Reliability):
             self.expect_that_it_goes_on(out)
             return done.returncode != 0
 
-        points = self.at_calls(sorted({*range(1, 30), *range(1, 300, stride)}), is_killed)  # all of the start
+        points = self.at_calls(sorted({*range(1, 30), *range(1, 500, stride)}), is_killed)  # all of the start
         print(f"{points} kill points survived", end=" ", flush=True)
         self.assertGreaterEqual(points, 200 // stride)
 
@@ -324,7 +327,7 @@ class Faults(Reliability):
             for call in calls:
                 done = self.third_step("out", call, errno.ENOSPC, rank=rank, ranks=2)
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-                self.assertRegex(done.stderr.lower(), "cannot write out/hydrostatic_00000003.*no space left on device")
+                self.assertRegex(done.stderr.lower(), "cannot write out/basin_.*no space left on device")
                 self.expect_that_it_goes_on("out", ranks=2)
 
     def test_a_full_and_a_read_only_disk(self):

@@ -149,9 +149,10 @@ class CommandLine(System):
         self.assertFalse((self.directory / "out").exists())
         # What is free here does not bound the plan of a cluster, but for the cells of the case itself.
         self.assertEqual(limited(tank, "--set", "particles.spacing=2e-4", "--plan", "64").returncode, 0)
-        done = limited(tank, "--set", f"particles.spacing={0.2 / 37000!r}", "--plan", "64")
-        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        self.assertIn("not enough memory", done.stderr)
+        for columns in (12500, 37000):  # 12500: the cells alone would fit, the graph that is partitioned does not
+            done = limited(tank, "--set", f"particles.spacing={0.2 / columns!r}", "--plan", "64")
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn("not enough memory", done.stderr)
         done = limited(tank, "--check")
         self.assertRegex(done.stdout, r"memory .* free for a rank\n")
 
@@ -327,6 +328,20 @@ class Check(System):
             self.assertTrue(any(told.startswith(line) for told in texts[0]), f"{line}: {texts[0]}")
         self.assertTrue(any(told.startswith("fluid       water: 1 m^2, ") and " particles, their volume " in told
                             for told in texts[0]))
+
+    def test_a_scheme_that_does_not_hold_is_a_warning(self):
+        tank = [ROOT / "input/hydrostatic.toml", "--set", "output.directory=out", "--set", "time.end=2e-3",
+                "--set", "output.average_start=0"]
+        settings = ("walls.model=particles", "free_surface.zero_outside=false", "shifting.coefficient=0",
+                    "collision.distance=0")
+        words = [word for setting in settings for word in ("--set", setting)]
+        for more in ([], ["--check"]):
+            done = impinge(*tank, *words, *more, cwd=self.directory)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for setting in settings:
+                self.assertIn(f"impinge: warning: {setting.partition('=')[0]} = ", done.stderr)
+        self.assertNotIn("warning", impinge(*tank, *words, "--set", "scheme=paper", cwd=self.directory).stderr)
+        self.assertNotIn("warning", impinge(*tank, cwd=self.directory).stderr)
 
     def test_a_narrow_gap_is_a_warning(self):
         done = impinge(self.path, "--set", "wall[3].center=[1.84,0.6]", "--check", cwd=self.directory)

@@ -64,5 +64,18 @@ TEST(Memory, NeedIsCountedForFewParticlesAndSampledForMany) {
   expect_count<2>(shipped_case("drop/drop.toml", {"particles.spacing=2e-3"}), 0.02);
 }
 
+TEST(Memory, NeedIsRefusedWhereTheCellsAreTooManyToCount) {
+  try {
+    memory_need<2>(shipped_case("jet60-quick.toml", {"plate.begin=-1e8"}), 1);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("particles.spacing = 0.02: makes some 2e+11 background cells; allowed: at "
+                        "most 2147483647"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace impinge

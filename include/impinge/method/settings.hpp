@@ -126,4 +126,8 @@ void derive_method(const Keys& keys, MethodSettings& settings, double reference_
 /// Notes where the method's keys contradict each other.
 void check_method(Keys& keys, const MethodSettings& settings);
 
+/// Keys without which the consistent scheme does not hold, where a case has switched them off, each with what happens
+/// then (docs/accuracy.md has all pairs of keys). The paper's scheme has none.
+std::vector<std::string> scheme_warnings(const MethodSettings& settings);
+
 }  // namespace impinge

@@ -31,7 +31,11 @@ struct CellGraph {
 };
 
 /// True on the ranks that must know the edges of the graph; the vertices' weights must be known to all. Not collective.
-bool needs_edges(MPI_Comm comm, Partitioner partitioner);
+bool needs_edges(MPI_Comm comm, int parts, Partitioner partitioner);
+
+/// What a vertex of `neighbours` edges takes on a rank that knows them, and there the library [bytes]. Measured with
+/// METIS: 4.4 times the graph in 2D, 3.6 times in 3D.
+constexpr double graph_memory(int neighbours) { return 4.5 * neighbours * 2.0 * sizeof(int); }
 
 /// Part of every vertex, 0 to `parts` - 1, with balanced vertex weights and a small cut; parts beyond the number of
 /// vertices get nothing. METIS k-way runs on rank 0, PTScotch on all ranks (through PETSc): its parts differ

@@ -28,8 +28,8 @@ double free_memory(MPI_Comm comm);
 template <int Dim>
 void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles = 0);
 
-/// Throws InputError where plan_run needs more than is free. Collective.
+/// Throws InputError where plan_run for so many ranks needs more than is free. Collective.
 template <int Dim>
-void check_memory_of_plan(MPI_Comm comm, const Case& config);
+void check_memory_of_plan(MPI_Comm comm, const Case& config, int ranks);
 
 }  // namespace impinge
