@@ -69,10 +69,10 @@ def short(value):
 
 def table(rows, head=()):
     """An HTML table; the first cell of a row names it."""
-    def line(cells, tag):
-        return "<tr>" + "".join(f"<{tag if k == 0 or tag == 'th' else 'td'}>{html.escape(str(cell))}</{tag if k == 0 or tag == 'th' else 'td'}>" for k, cell in enumerate(cells)) + "</tr>"
+    def row(cells, tag):
+        return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
 
-    return "<table>" + (line(head, "th") if head else "") + "".join(line(row, "td") for row in rows) + "</table>"
+    return f"<table>{row(head, 'th') if head else ''}{''.join(row(cells, 'td') for cells in rows)}</table>"
 
 
 class Frames:
@@ -108,6 +108,7 @@ class Frames:
         margin = run.spacing
         self.low, self.high = positions.min(axis=0) - margin, positions.max(axis=0) + margin
         fluid = np.isin(np.concatenate([part["type"] for part in parts]), (impinge.FLUID, impinge.INLET))
+        self.seen = self.view(positions[fluid] if fluid.any() else positions)
         self.range = {
             name: impinge.colour_range(np.concatenate([part[name] for part in parts])[fluid]) for name in ("pressure", "speed")
         }
@@ -116,6 +117,12 @@ class Frames:
         self.steps = [part["step"] for part in parts]
         self.counts = [len(part["type"]) for part in parts]
         self.packed = [self.pack(part) for part in parts]
+
+    def view(self, fluid):
+        """The corners of what the page shows at first: the fluid of all frames without single drops that fly far."""
+        low, high = np.quantile(fluid, (0.001, 0.999), axis=0)
+        margin = 0.03 * np.max(high - low)
+        return np.maximum(low - margin, self.low), np.minimum(high + margin, self.high)
 
     def pack(self, part):
         """A frame in base 64: positions of all particles, then pressures, speeds, ranks, types."""
@@ -234,7 +241,7 @@ def progress(run, snapshot, history):
     rows = [("time", f"{time:.4g} of {end:.4g} s"), ("snapshots", f"{len(run.steps)}, the last at t = {snapshot.time:.4g} s")]
     if history:
         seconds = history["seconds"].sum()
-        rows += [("steps", f"{int(history['step'][-1]):,}, dt = {history['dt'][-1]:.3g} s (bound: {history['limit'][-1]})"),
+        rows += [("steps", f"{int(history['step'][-1]):,}, dt = {history['dt'][-1]:.3g} s (limited by: {history['limit'][-1]})"),
                  ("computing time", f"{duration(seconds)} on {snapshot.rank.max() + 1 if snapshot.count else 1} rank(s), {history.rows / max(seconds, 1e-9):.3g} steps a second"),
                  ("pressure solver", f"{history['iterations'].mean():.3g} iterations a step")]
         if status == "running":
@@ -285,9 +292,10 @@ def metrics(validation):
             exact = report["analytic"].get(exact) if isinstance(exact, str) else exact
             rows.append((words, f"{100 * value:.2g} %" if is_error else short(float(value)), "-" if exact is None else short(exact), key))
     times = report["snapshots"]
-    parts = [f"<p>Compared with the exact flow (target: {html.escape(report['target'])}) over {times['count']} snapshot(s), "
-             f"t = {times['first_time']:.4g} to {times['last_time']:.4g} s.</p>", table(rows, ("", "this run", "exact", "metric"))]
-    return "".join(parts) + picture(validation.folder / "pressure.png", "computed and exact pressure")
+    words = (f"<p>Compared with the exact flow (target: {html.escape(report['target'])}) over {times['count']} snapshot(s), "
+             f"t = {times['first_time']:.4g} to {times['last_time']:.4g} s.</p>")
+    measured = table(rows, ("", "this run", "exact", "metric"))
+    return f'<div class="pair"><div>{words}{measured}</div>{picture(validation.folder / "pressure.png", "computed and exact pressure")}</div>'
 
 
 def picture(path, words):
@@ -344,18 +352,20 @@ def write_page(run):
     frames = Frames(run, warnings)
     data = {
         "dimension": frames.dimension, "spacing": run.spacing, "share": frames.share, "low": frames.low.tolist(),
-        "high": frames.high.tolist(), "times": frames.times, "steps": frames.steps, "counts": frames.counts, "ranks": frames.ranks,
+        "high": frames.high.tolist(), "seen": [corner.tolist() for corner in frames.seen], "times": frames.times, "steps": frames.steps, "counts": frames.counts, "ranks": frames.ranks,
         "range": frames.range, "colours": {"pressure": colours("viridis"), "speed": colours("cividis")},
         "marks": observers(run) + exact_surface(run.validation), "charts": charts(run),
     }
     scene = picture(run.file("_scene.png"), "the scene at the start")
+    scene = f"<section><h2>Scene at the start</h2>{scene}</section>" if scene else ""
     now = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
     values = {
         "title": html.escape(run.name), "status": status, "percent": f"{100 * done:.3g}", "written": now,
         "computed": table(computed(run, snapshot)), "progress": table(progress_rows),
         "warnings": "".join(f"<li>{html.escape(text)}</li>" for text in warnings) or "<li class=none>None.</li>",
         "note": html.escape(frames.note), "metrics": metrics(run.validation), "onward": onward(run, snapshot),
-        "scene": scene or "<p>No picture yet: <code>impinge CASE --check</code> draws the scene.</p>",
+        "scene": scene,
+        "hint": "" if scene else '<p class="quiet"><code>impinge CASE --check</code> draws walls, inlets, outlets and what is observed.</p>',
         "case": html.escape(snapshot.attributes["case"]),
         "libraries": "".join(f"<script>{library(name)}</script>\n" for name in LIBRARIES),
         "style": (JAVASCRIPT / "dygraphs/dygraph.min.css").read_text(encoding="utf-8").split("/*#")[0],
