@@ -134,7 +134,7 @@ def draw_isobars(axes, run):
 def plot_pressure(run):
     """The last snapshot above the analytic field, with the same isobars drawn in both."""
     figure, (computed, analytic) = plt.subplots(2, 1, sharex=True, layout="constrained", figsize=(8, 2 * run.height_of_panel(6.2) + 1.2))
-    norm, colours = plt.Normalize(0, run.dynamic_pressure), plt.get_cmap("turbo")
+    norm, colours = plt.Normalize(0, run.dynamic_pressure), plt.get_cmap("viridis")
     moving = np.isin(run.type, (FLUID, INLET)) & np.isfinite(run.position).all(axis=1) & np.isfinite(run.pressure)
     draw_particles(computed, run, np.isin(run.type, (WALL, GHOST)) & np.isfinite(run.position[:, 0]), facecolors="0.75")
     discs = draw_particles(computed, run, moving, array=run.pressure[moving], cmap=colours, norm=norm)
@@ -250,8 +250,8 @@ class Figures:
         self.folder.mkdir(exist_ok=True)
 
     def draw(self):
-        self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "turbo")
-        self.field("speed", self.snapshot.speed, "speed [m/s]", "viridis")
+        self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "viridis")
+        self.field("speed", self.snapshot.speed, "speed [m/s]", "cividis")
         self.surface()
         self.tables()
 
@@ -290,10 +290,17 @@ class Figures:
 
     def film(self):
         """The pressure of all snapshots, with one scale: an mp4 where ffmpeg is at hand, else a gif."""
-        slices = [Slice(snapshot, self.run.spacing) for snapshot in self.run.snapshots]
-        norm = plt.Normalize(*impinge.colour_range(np.concatenate([piece.pressure[piece.fluid] for piece in slices])))
-        self.snapshot.low = np.min([piece.low for piece in slices], axis=0)
-        self.snapshot.high = np.max([piece.high for piece in slices], axis=0)
+        def slices():
+            return (Slice(snapshot, self.run.spacing) for snapshot in self.run.snapshots)
+
+        lows, highs, samples = [], [], []
+        for piece in slices():
+            lows.append(piece.low)
+            highs.append(piece.high)
+            pressure = piece.pressure[piece.fluid]
+            samples.append(pressure[:: 1 + pressure.size // 10_000])
+        norm = plt.Normalize(*impinge.colour_range(np.concatenate(samples)))
+        self.snapshot.low, self.snapshot.high = np.min(lows, axis=0), np.max(highs, axis=0)
         figure, axes = self.panel()
         figure.colorbar(matplotlib.cm.ScalarMappable(norm, "viridis"), ax=axes, shrink=0.8, extend="both", label="pressure [Pa]")
         with_ffmpeg = shutil.which("ffmpeg")
@@ -302,7 +309,7 @@ class Figures:
         writer = FFMpegWriter(FILM_RATE, extra_args=even) if with_ffmpeg else PillowWriter(FILM_RATE)
         path = self.folder / f"pressure.{'mp4' if with_ffmpeg else 'gif'}"
         with writer.saving(figure, path, dpi=120):
-            for piece in slices:
+            for piece in slices():
                 for drawn in list(axes.collections):
                     drawn.remove()
                 chosen = piece.fluid & np.isfinite(piece.pressure)

@@ -39,6 +39,7 @@ LIBRARIES = ("dygraphs/dygraph.min.js", "dygraphs/extras/synchronizer.js", "thre
 LICENCES = ("libjs-dygraphs", "libjs-three")
 
 MOST_FRAMES = 150
+MOST_PARTICLES = 200_000  # of a frame, that it plays smoothly
 MOST_BYTES = 12_000_000  # of all frames together; text of the page is a third more
 MOST_ROWS = 1500  # of a curve, with two rows for each line of it
 
@@ -81,24 +82,25 @@ class Frames:
     def __init__(self, run, warnings):
         chosen = np.unique(np.linspace(0, len(run.steps) - 1, min(len(run.steps), MOST_FRAMES)).round().astype(int))
         self.dimension = run.case["dimension"]
-        snapshots = []
+        counts = {}
         for step in np.array(run.steps)[chosen]:
             try:
-                snapshots.append(run.snapshot(step))
+                counts[step] = run.snapshot(step).count
             except (OSError, KeyError) as error:
                 warnings.append(f"The snapshot of step {step} cannot be read and is left out: {error}.")
-        if not snapshots:
+        if not counts:
             raise ValueError(f"{run.directory} has no snapshot that can be read")
-        self.all, self.total = len(run.steps), max(snapshot.count for snapshot in snapshots)
+        self.all, self.total = len(run.steps), max(counts.values())
         particle_bytes = 2 * self.dimension + 4
-        self.share = min(1.0, MOST_BYTES / (particle_bytes * sum(snapshot.count for snapshot in snapshots)))
+        self.share = min(1.0, MOST_PARTICLES / max(self.total, 1), MOST_BYTES / (particle_bytes * max(sum(counts.values()), 1)))
         parts, not_finite = [], 0
-        for snapshot in snapshots:
+        for step in counts:
+            snapshot = run.snapshot(step)
             finite = snapshot.finite
             not_finite = max(not_finite, np.count_nonzero(~finite))
             # The same particles in all frames: a hash of the id decides.
             keep = finite & ((snapshot.id.astype(np.uint64) * np.uint64(2654435761) % np.uint64(1 << 32)) < self.share * (1 << 32))
-            part = {name: getattr(snapshot, name)[keep] for name in ("position", "pressure", "speed", "rank", "type")}
+            part = {name: getattr(snapshot, name)[keep] for name in ("position", "pressure", "speed", "rank", "type", "fluid")}
             parts.append({**part, "step": snapshot.step, "time": snapshot.time})
         if not_finite:
             warnings.append(f"In a snapshot, {not_finite} particles have no finite position; they are not drawn.")
@@ -107,10 +109,9 @@ class Frames:
             raise ValueError(f"{run.directory} has no particle to draw")
         margin = run.spacing
         self.low, self.high = positions.min(axis=0) - margin, positions.max(axis=0) + margin
-        fluid = np.isin(np.concatenate([part["type"] for part in parts]), (impinge.FLUID, impinge.INLET))
-        self.seen = self.view(positions[fluid] if fluid.any() else positions)
+        self.seen = self.view(parts)
         self.range = {
-            name: impinge.colour_range(np.concatenate([part[name] for part in parts])[fluid]) for name in ("pressure", "speed")
+            name: impinge.colour_range(np.concatenate([part[name][part["fluid"]] for part in parts])) for name in ("pressure", "speed")
         }
         self.ranks = 1 + max((int(part["rank"].max()) for part in parts if part["rank"].size), default=0)
         self.times = [part["time"] for part in parts]
@@ -118,10 +119,14 @@ class Frames:
         self.counts = [len(part["type"]) for part in parts]
         self.packed = [self.pack(part) for part in parts]
 
-    def view(self, fluid):
-        """The corners of what the page shows at first: the fluid of all frames without single drops that fly far."""
-        low, high = np.quantile(fluid, (0.001, 0.999), axis=0)
-        margin = 0.03 * np.max(high - low)
+    def view(self, parts):
+        """The corners of what the page shows at first: the fluid of all frames without the outermost drops of each."""
+        fluid = [part["position"][part["fluid"]] for part in parts if part["fluid"].any()]
+        if not fluid:
+            return self.low, self.high
+        low = np.min([np.quantile(points, 0.003, axis=0) for points in fluid], axis=0)
+        high = np.max([np.quantile(points, 0.997, axis=0) for points in fluid], axis=0)
+        margin = 0.04 * np.max(high - low)
         return np.maximum(low - margin, self.low), np.minimum(high + margin, self.high)
 
     def pack(self, part):
@@ -198,7 +203,7 @@ def charts(run):
         ("sheets against the exact ones", "thickness", validation and validation.film_thickness),
     ):
         if profile:
-            lines = {name: profile[column] for name, column in (("computed", label), ("exact", "analytic")) if np.isfinite(profile[column]).any()}
+            lines = {name: profile[column] for name, column in (("exact", "analytic"), ("computed", label)) if np.isfinite(profile[column]).any()}
             result.append(chart("validation", f"{title} [{profile.units[label]}]", "x [m]", profile["x"], lines))
     return result
 
