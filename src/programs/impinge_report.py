@@ -156,7 +156,7 @@ def observers(run):
     """Fixed probes, gauges and sections: their names and points, in the run's frame."""
     marks = []
     for kind in ("probe", "gauge", "section"):
-        for k, item in enumerate(run.case.get(kind, []), start=1):
+        for item in run.case.get(kind, []):
             if kind == "probe" and item["wall"] == "none":
                 points = [item["position"]]
             elif kind == "gauge":
@@ -166,7 +166,7 @@ def observers(run):
                 points = [item["begin"], item["end"]]
             else:
                 continue
-            marks.append({"kind": kind, "name": f"{kind} {item.get('name') or k}", "points": points})
+            marks.append({"kind": kind, "name": item["name"], "points": points})
     return marks
 
 
@@ -204,7 +204,11 @@ def charts(run):
     ):
         if profile:
             lines = {name: profile[column] for name, column in (("exact", "analytic"), ("computed", label)) if np.isfinite(profile[column]).any()}
-            result.append(chart("validation", f"{title} [{profile.units[label]}]", "x [m]", profile["x"], lines))
+            x = profile["x"]
+            # Lines stop at the gap between the two sheets.
+            gaps = np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else np.array([], int)
+            lines = {name: np.insert(values, gaps, np.nan) for name, values in lines.items()}
+            result.append(chart("validation", f"{title} [{profile.units[label]}]", "x [m]", np.insert(x, gaps, x[gaps]), lines))
     return result
 
 
