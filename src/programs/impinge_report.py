@@ -6,8 +6,8 @@ the tables as curves to zoom and read off, compares with the exact flow where im
 go on. A run that goes on can be looked at: the page shows what there is, and is replaced when impinge-report is called
 again.
 
-Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's (exit code 3: neither has them); and
-Debian's libjs-dygraphs and libjs-three, whose code the page holds.
+Needs h5py and matplotlib, of the first python3 on the PATH, else of the system's; and Debian's libjs-dygraphs and
+libjs-three, whose code the page holds. Exit code 3: one of these is missing.
 """
 
 import argparse
@@ -59,6 +59,10 @@ METRICS = {
     "plane_x": ("place of the stagnation point between the jets [m]", 0, False),
     "plane_drift": ("its speed [m/s]", 0, False),
 }
+
+
+class MissingLibrary(Exception):
+    """A library of the page that is not installed."""
 
 
 def short(value):
@@ -337,7 +341,7 @@ def library(name):
     """A library's code, as it can stand in a page."""
     path = JAVASCRIPT / name
     if not path.exists():
-        raise FileNotFoundError(f"there is no {path}; install Debian's libjs-dygraphs and libjs-three")
+        raise MissingLibrary(f"there is no {path}; install Debian's libjs-dygraphs and libjs-three")
     code = re.sub(r"(?m)^//# sourceMappingURL.*$", "", path.read_text(encoding="utf-8"))
     return code.replace("</script", "<\\/script")
 
@@ -400,6 +404,9 @@ def main():
     arguments = parser.parse_args()
     try:
         path = write_page(impinge.Run(arguments.directory, arguments.name))
+    except MissingLibrary as error:
+        print(f"impinge-report: {error}", file=sys.stderr)
+        sys.exit(3)
     except (OSError, KeyError, ValueError) as error:
         sys.exit(f"impinge-report: {error}")
     print(f"page       {path}  ({path.stat().st_size / 1e6:.1f} MB)")

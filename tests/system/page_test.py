@@ -159,6 +159,7 @@ class Pages(unittest.TestCase):
         ActionChains(self.driver).move_to_element_with_offset(plots[0], -50, 0).click_and_hold().move_by_offset(120, 0).release().perform()
         for before, after in zip(whole, self.script("return overTime.map(chart => chart.graph.xAxisRange())")):
             self.assertLess(after[1] - after[0], 0.5 * (before[1] - before[0]))
+        ActionChains(self.driver).move_to_element(plots[0]).perform()
         self.assertRegex(self.driver.find_element(By.CSS_SELECTOR, ".legend").text, r"\d")
         ActionChains(self.driver).move_to_element(plots[0]).double_click().perform()
         self.assertEqual(self.script("return overTime[0].graph.xAxisRange()"), whole[0])
