@@ -3,7 +3,7 @@
 # As root or as a user with sudo. Where apt is not at hand it says what is missing and stops.
 # Usage: jobs/install.sh            install what is missing
 #        jobs/install.sh --list     print the packages and stop
-#        jobs/install.sh --tools    install what tests/fuzz.sh and tests/valgrind.sh need besides
+#        jobs/install.sh --tools    install what tests/fuzz.sh, tests/valgrind.sh, the test of the page and films in mp4 need besides
 set -euo pipefail
 
 packages=(
@@ -12,8 +12,9 @@ packages=(
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev clang-format
   python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9
+  libjs-dygraphs libjs-three
 )
-tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg)
+tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg chromium chromium-driver python3-selenium ffmpeg)
 
 if [ "${1:-}" = --tools ]; then
   packages+=("${tools[@]}")

@@ -140,7 +140,7 @@ std::string set_run_aside(const std::string& directory, const std::string& name)
   std::vector<std::string> files = list_snapshots(directory, name);
   for (std::string& path : list_checkpoints(directory, name)) files.push_back(std::move(path));
   std::vector<std::string> others{series_path(directory, name), file_series_path(directory, name)};
-  for (const std::string& own : {std::string("validation"), name + "_figures"})
+  for (const std::string& own : {std::string("validation"), name + "_figures", name + "_report.html"})
     others.push_back(path_of(directory, own));
   for (const char* kind : table_kinds) others.push_back(table_path(directory, name, kind));
   for (std::string& path : others)

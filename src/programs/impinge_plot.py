@@ -7,6 +7,9 @@ there is such a table, into DIR/<case>_figures. In three dimensions it draws a s
 
 impinge-plot --scene FILE draws the scene that impinge --check has written, <case>_scene.vtkhdf, as <case>_scene.png.
 
+impinge-plot DIR --animate draws the pressure of all snapshots as a film instead: pressure.mp4 where ffmpeg is at hand, else
+pressure.gif.
+
 If DIR/validation holds what impinge-validate wrote of a jet, it also draws the jet beside the analytic one:
 pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation; of a wedge or a cup
 wall_pressure.png.
@@ -15,11 +18,9 @@ Needs h5py and matplotlib: of the first python3 on the PATH, else of the system'
 """
 
 import argparse
-import csv
-import json
 import os
 import pathlib
-import re
+import shutil
 import sys
 
 try:
@@ -27,8 +28,11 @@ try:
     import matplotlib
     import numpy as np
 
+    import impinge
+
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.animation import FFMpegWriter, PillowWriter
     from matplotlib.collections import EllipseCollection
 except ImportError as error:
     SYSTEM = "/usr/bin/python3"
@@ -37,32 +41,21 @@ except ImportError as error:
     print(f"impinge-plot: {error}; {sys.executable} needs the packages h5py and matplotlib", file=sys.stderr)
     sys.exit(3)
 
-try:
-    import tomllib
-except ImportError:
-    tomllib = None
+from impinge import FLUID, GHOST, INLET, WALL
 
-FLUID, INLET, WALL, GHOST = range(4)
 COMPUTED, ANALYTIC = "#1f5fa8", "#c0392b"
+FILM_RATE = 12  # snapshots per second
 LABELLED_CP = (0.1, 0.3, 0.5, 0.7, 0.9)
 
 plt.rcParams.update({"figure.dpi": 160, "font.size": 10, "axes.grid": False, "legend.frameon": False})
 
 
-def read_table(path):
-    """Columns of a CSV file by name, as arrays."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    values = np.array(rows[1:], dtype=float).reshape(-1, len(rows[0]))
-    return dict(zip(rows[0], values.T))
-
-
 class JetRun:
-    """The report of impinge-validate; x and y in jet widths."""
+    """The comparison of impinge-validate; x and y in jet widths."""
 
-    def __init__(self, directory):
-        self.folder = directory / "validation"
-        self.report = json.loads((self.folder / "validation.json").read_text())
+    def __init__(self, run):
+        self.validation = run.validation
+        self.folder, self.report = self.validation.folder, self.validation.report
         parameters = self.report["parameters"]
         self.width = parameters["width"]
         self.spacing = parameters["spacing"] / self.width
@@ -70,25 +63,20 @@ class JetRun:
         self.plate = np.array([parameters["plate_begin"], parameters["plate_end"]]) / self.width
         self.has_field = self.report["target"] in ("plate", "jet")
         if self.has_field:
-            self.read_field(directory)
+            self.read_field(run.directory)
 
     def read_field(self, directory):
         """The analytic lines and the last snapshot, in the frame of the analytic jet."""
-        frame = {name: np.array(vector) for name, vector in self.report["frame"].items()}
-        surface = read_table(self.folder / "surface.csv")
-        self.surface = [
-            np.column_stack((surface["x_m"], surface["y_m"]))[surface["sheet"] == sheet] / self.width for sheet in (1, 2)
-        ]
-        isobars = read_table(self.folder / "isobars.csv")
-        line = np.column_stack((isobars["x_m"], isobars["y_m"])) / self.width
-        self.isobars = {cp: line[isobars["cp"] == cp] for cp in np.unique(isobars["cp"])}
+        surface, isobars = self.validation.surface, self.validation.isobars
+        lines = np.column_stack((surface["x"], surface["y"])) / self.width
+        self.surface = [lines[surface["sheet"] == sheet] for sheet in (1, 2)]
+        lines = np.column_stack((isobars["x"], isobars["y"])) / self.width
+        self.isobars = {cp: lines[isobars["cp"] == cp] for cp in np.unique(isobars["cp"])}
 
-        with h5py.File(directory / self.report["last_snapshot"], "r") as file:
-            data = file["VTKHDF/PointData"]
-            position = (file["VTKHDF/Points"][:, :2] - frame["origin"]) @ np.column_stack((frame["x"], frame["y"])) / self.width
-            self.type, self.rank = data["type"][:], data["rank"][:]
-            pressure = data["pressure"][:]
-        finite = np.isfinite(position).all(axis=1)
+        snapshot = impinge.Snapshot(directory / self.report["last_snapshot"])
+        position = self.validation.to_frame(snapshot.position[:, :2]) / self.width
+        self.type, self.rank, pressure = snapshot.type, snapshot.rank, snapshot.pressure
+        finite = snapshot.finite
         self.not_drawn = np.count_nonzero(~(finite & np.isfinite(pressure)))
         corners = np.vstack((*self.surface, np.column_stack((self.plate, [0, 0]))))
         margin = 0.15 + 6 * self.spacing  # the inlet buffer and the ghosts of the wall
@@ -146,7 +134,7 @@ def draw_isobars(axes, run):
 def plot_pressure(run):
     """The last snapshot above the analytic field, with the same isobars drawn in both."""
     figure, (computed, analytic) = plt.subplots(2, 1, sharex=True, layout="constrained", figsize=(8, 2 * run.height_of_panel(6.2) + 1.2))
-    norm, colours = plt.Normalize(0, run.dynamic_pressure), plt.get_cmap("turbo")
+    norm, colours = plt.Normalize(0, run.dynamic_pressure), plt.get_cmap("viridis")
     moving = np.isin(run.type, (FLUID, INLET)) & np.isfinite(run.position).all(axis=1) & np.isfinite(run.pressure)
     draw_particles(computed, run, np.isin(run.type, (WALL, GHOST)) & np.isfinite(run.position[:, 0]), facecolors="0.75")
     discs = draw_particles(computed, run, moving, array=run.pressure[moving], cmap=colours, norm=norm)
@@ -178,7 +166,7 @@ def plot_pressure(run):
 def plot_profile(run, table, computed, analytic, y_label, name, note):
     """A profile along the plate, computed and analytic."""
     figure, axes = plt.subplots(layout="constrained", figsize=(8, 4))
-    x = table["x_m"] / run.width
+    x = table["x"] / run.width
     # Lines stop at the gap between the two sheets.
     gap = np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else []
     for column, style in (
@@ -202,15 +190,15 @@ def plot_profile(run, table, computed, analytic, y_label, name, note):
 def plot_wall_pressure(run):
     window = run.report["window"]
     note = f"averaged over {window['begin']:.3f}..{window['end']:.3f} s" if window else "no time average yet"
-    table = read_table(run.folder / "wall_pressure.csv")
-    plot_profile(run, table, "pressure_Pa", "analytic_Pa", "wall pressure [Pa]", "wall_pressure.png", note)
+    table = run.validation.wall_pressure
+    plot_profile(run, table, "pressure", "analytic", "wall pressure [Pa]", "wall_pressure.png", note)
 
 
 def plot_film_thickness(run):
     times = run.report["snapshots"]
     note = f"mean of {times['count']} snapshot(s), {times['first_time']:.3f}..{times['last_time']:.3f} s"
-    table = read_table(run.folder / "film_thickness.csv")
-    plot_profile(run, table, "thickness_m", "analytic_m", "film thickness [m]", "film_thickness.png", note)
+    table = run.validation.film_thickness
+    plot_profile(run, table, "thickness", "analytic", "film thickness [m]", "film_thickness.png", note)
 
 
 def plot_ranks(run):
@@ -229,92 +217,43 @@ def plot_ranks(run):
     run.save(figure, "ranks.png")
 
 
-class Snapshot:
+class Slice:
     """The particles of a snapshot, in metres; of three dimensions those of a slice through the middle."""
 
-    def __init__(self, path):
-        with h5py.File(path, "r") as file:
-            data = file["VTKHDF/PointData"]
-            points, velocity = file["VTKHDF/Points"][:], data["velocity"][:]
-            self.pressure, self.type = data["pressure"][:], data["type"][:]
-            self.free_surface = data["free_surface"][:].astype(bool)
-            self.time, self.step, self.status = file.attrs["time"], int(file.attrs["step"]), text(file.attrs["status"])
-            self.dimension = int(file.attrs["dimension"])
-            self.case = text(file.attrs["case"])
-        self.spacing = float(re.search(r"^\[particles\][^\[]*?^spacing = (\S+)", self.case, re.M | re.S)[1])
-        self.speed = np.linalg.norm(velocity, axis=1)
-        finite = np.isfinite(points).all(axis=1)
-        self.not_drawn = np.count_nonzero(~finite)
+    def __init__(self, snapshot, spacing):
+        self.time, self.step, self.status, self.dimension = snapshot.time, snapshot.step, snapshot.status, snapshot.dimension
+        self.spacing, points, drawn = spacing, snapshot.position, snapshot.finite
+        self.not_drawn = np.count_nonzero(~drawn)
         self.axes, self.slice = ("x", "y"), ""
-        drawn = finite
         if self.dimension == 3:
-            middle = 0.5 * (points[finite, 1].min() + points[finite, 1].max()) if finite.any() else 0.0
-            drawn = finite & (np.abs(points[:, 1] - middle) <= 0.5 * self.spacing)
+            middle = 0.5 * (points[drawn, 1].min() + points[drawn, 1].max()) if drawn.any() else 0.0
+            drawn = drawn & (np.abs(points[:, 1] - middle) <= 0.5 * self.spacing)
             points = points[:, [0, 2]]
             self.axes, self.slice = ("x", "z"), f", slice at y = {middle:.4g} m"
         self.position = points[drawn, :2]
-        for name in ("pressure", "type", "free_surface", "speed"):
-            setattr(self, name, getattr(self, name)[drawn])
-        self.fluid = np.isin(self.type, (FLUID, INLET))
+        for name in ("pressure", "type", "free_surface", "speed", "fluid"):
+            setattr(self, name, getattr(snapshot, name)[drawn])
         if not self.position.size:
-            raise ValueError(f"{path} has no particle to draw")
+            raise ValueError(f"{snapshot.path} has no particle to draw")
         margin = 3 * self.spacing
         self.low, self.high = self.position.min(axis=0) - margin, self.position.max(axis=0) + margin
-
-
-def text(attribute):
-    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
-
-
-def snapshots_of(directory, name):
-    """The paths of the snapshots of the only case in a directory, or of the case `name`, by step; and its name."""
-    found = {}
-    for path in directory.glob("*.vtkhdf"):
-        match = re.fullmatch(r"(.+)_(\d{8,18})\.vtkhdf", path.name)
-        if match and name in (None, match[1]):
-            found.setdefault(match[1], {})[int(match[2])] = path
-    if len(found) > 1:
-        raise ValueError(f"{directory} has runs of several cases: {', '.join(sorted(found))}; choose one by --name")
-    if not found:
-        raise ValueError(f"{directory} has no snapshot" + (f" of {name}" if name else ""))
-    ((case, snapshots),) = found.items()
-    return case, dict(sorted(snapshots.items()))
-
-
-def choose(snapshots, step, time):
-    """The snapshot of a step, the one nearest to a time, or the last."""
-    if step is not None:
-        if step not in snapshots:
-            raise ValueError(f"no snapshot of step {step}; there are {', '.join(map(str, snapshots))}")
-        return snapshots[step]
-    if time is None:
-        return list(snapshots.values())[-1]
-
-    def distance(path):
-        with h5py.File(path, "r") as file:
-            return abs(file.attrs["time"] - time)
-
-    return min(snapshots.values(), key=distance)
 
 
 class Figures:
     """Draws a run whatever its scene, into DIR/<case>_figures."""
 
-    def __init__(self, directory, name, step, time):
-        self.case, snapshots = snapshots_of(directory, name)
-        self.directory = directory
-        self.snapshot = Snapshot(choose(snapshots, step, time))
+    def __init__(self, run, step, time):
+        self.run = run
+        self.snapshot = Slice(run.snapshot(step, time), run.spacing)
         self.ending = "" if step is None and time is None else f"_{self.snapshot.step:08}"
-        self.folder = directory / f"{self.case}_figures"
+        self.folder = run.file("_figures")
         self.folder.mkdir(exist_ok=True)
 
     def draw(self):
-        self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "turbo")
-        self.field("speed", self.snapshot.speed, "speed [m/s]", "viridis")
+        self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "viridis")
+        self.field("speed", self.snapshot.speed, "speed [m/s]", "cividis")
         self.surface()
-        self.history()
-        for kind, panels in TABLES.items():
-            self.curves(kind, panels)
+        self.tables()
 
     def save(self, figure, name):
         path = self.folder / name
@@ -326,27 +265,59 @@ class Figures:
         """A figure of the scene's shape, with the walls drawn."""
         width, height = self.snapshot.high - self.snapshot.low
         figure, axes = plt.subplots(layout="constrained", figsize=(8, min(9, max(2, 7 * height / width)) + 0.8))
-        snapshot = self.snapshot
+        axes.set(xlim=(self.snapshot.low[0], self.snapshot.high[0]), ylim=(self.snapshot.low[1], self.snapshot.high[1]),
+                 aspect="equal", xlabel=f"{self.snapshot.axes[0]} [m]", ylabel=f"{self.snapshot.axes[1]} [m]")
+        self.walls(axes, self.snapshot)
+        return figure, axes
+
+    def walls(self, axes, snapshot):
+        """The walls and the title of a snapshot."""
         walls = np.isin(snapshot.type, (WALL, GHOST))
         # Without ghosts, wall particles stand on the surface.
         draw_particles(axes, snapshot, walls, 1.0 if np.any(snapshot.type == GHOST) else 0.6, facecolors="0.35")
-        axes.set(xlim=(snapshot.low[0], snapshot.high[0]), ylim=(snapshot.low[1], snapshot.high[1]), aspect="equal",
-                 xlabel=f"{snapshot.axes[0]} [m]", ylabel=f"{snapshot.axes[1]} [m]")
         missing = f"; {snapshot.not_drawn} particles not finite" if snapshot.not_drawn else ""
         status = "" if snapshot.status in ("finished", "running") else f" ({snapshot.status})"
-        axes.set_title(f"{self.case}: t = {snapshot.time:.4g} s, step {snapshot.step}{status}{snapshot.slice}{missing}", fontsize=10)
-        return figure, axes
+        axes.set_title(f"{self.run.name}: t = {snapshot.time:.4g} s, step {snapshot.step}{status}{snapshot.slice}{missing}", fontsize=10)
 
     def field(self, name, values, label, colours):
         figure, axes = self.panel()
         chosen = self.snapshot.fluid & np.isfinite(values)
-        inside = values[chosen]
-        low, high = (min(0.0, np.quantile(inside, 0.002)), np.quantile(inside, 0.998)) if inside.size else (0.0, 1.0)
-        norm = plt.Normalize(low, high if high > low else low + 1.0)
+        inside, norm = values[chosen], plt.Normalize(*impinge.colour_range(values[self.snapshot.fluid]))
         discs = draw_particles(axes, self.snapshot, chosen, array=inside, cmap=colours, norm=norm)
         largest = f", {inside.min():.4g} to {inside.max():.4g}" if inside.size else ", no fluid"
         figure.colorbar(discs, ax=axes, shrink=0.8, extend="both", label=label + largest)
         self.save(figure, f"{name}{self.ending}.png")
+
+    def film(self):
+        """The pressure of all snapshots, with one scale: an mp4 where ffmpeg is at hand, else a gif."""
+        def slices():
+            return (Slice(snapshot, self.run.spacing) for snapshot in self.run.snapshots)
+
+        lows, highs, samples = [], [], []
+        for piece in slices():
+            lows.append(piece.low)
+            highs.append(piece.high)
+            pressure = piece.pressure[piece.fluid]
+            samples.append(pressure[:: 1 + pressure.size // 10_000])
+        norm = plt.Normalize(*impinge.colour_range(np.concatenate(samples)))
+        self.snapshot.low, self.snapshot.high = np.min(lows, axis=0), np.max(highs, axis=0)
+        figure, axes = self.panel()
+        figure.colorbar(matplotlib.cm.ScalarMappable(norm, "viridis"), ax=axes, shrink=0.8, extend="both", label="pressure [Pa]")
+        with_ffmpeg = shutil.which("ffmpeg")
+        # H.264 takes even numbers of pixels.
+        even = ["-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]
+        writer = FFMpegWriter(FILM_RATE, extra_args=even) if with_ffmpeg else PillowWriter(FILM_RATE)
+        path = self.folder / f"pressure.{'mp4' if with_ffmpeg else 'gif'}"
+        with writer.saving(figure, path, dpi=120):
+            for piece in slices():
+                for drawn in list(axes.collections):
+                    drawn.remove()
+                chosen = piece.fluid & np.isfinite(piece.pressure)
+                draw_particles(axes, piece, chosen, array=piece.pressure[chosen], cmap="viridis", norm=norm)
+                self.walls(axes, piece)
+                writer.grab_frame()
+        plt.close(figure)
+        print(f"film       {path}")
 
     def surface(self):
         figure, axes = self.panel()
@@ -361,8 +332,8 @@ class Figures:
         self.save(figure, f"surface{self.ending}.png")
 
     def mark_observers(self, axes):
-        """Fixed probes, gauges and sections, where Python can read TOML."""
-        case = tomllib.loads(self.snapshot.case) if tomllib else {}
+        """Fixed probes, gauges and sections."""
+        case = self.run.case
         seen = [0, 2] if self.snapshot.dimension == 3 else [0, 1]
 
         def corner(vector):
@@ -380,56 +351,21 @@ class Figures:
             if case.get(kind):
                 axes.plot([], [], style, color="black", label=kind)
 
-    def table(self, kind):
-        path = self.directory / f"{self.case}_{kind}.csv"
-        if not path.exists():
-            return None
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        rows = [row for row in rows if len(row) == len(rows[0])]  # without a line that was broken off
-        return {name: np.array([number(row[k]) for row in rows[1:]]) for k, name in enumerate(rows[0])}
-
-    def history(self):
-        table = self.table("history")
-        if not table or not table["t"].size:
-            return
-        panels = [("kinetic_energy", "kinetic energy [J; 2D: J/m]"), ("max_speed", "largest speed [m/s]"),
-                  ("plate_force", "plate, floor [N; 2D: N/m]")]
-        panels = [panel for panel in panels if np.any(table[panel[0]] != 0.0)] or panels[:1]
-        figure, all_axes = self.stack(len(panels))
-        for axes, (name, label) in zip(all_axes, panels):
-            axes.plot(table["t"], table[name], color=COMPUTED, lw=1)
-            axes.set_ylabel(label)
-        self.save(figure, "history.png")
-
-    def stack(self, count):
-        figure, axes = plt.subplots(count, 1, sharex=True, squeeze=False, layout="constrained", figsize=(8, 1 + 2.4 * count))
-        axes[0, 0].set_title(self.case, fontsize=10)
-        axes[-1, 0].set_xlabel("t [s]")
-        return figure, axes[:, 0]
-
-    def curves(self, kind, panels):
-        """The columns of a table, those of one prefix and unit in a panel."""
-        table = self.table(kind)
-        if not table or not table["t [s]"].size:
-            return
-        drawn = []
-        for prefix, unit, label in panels:
-            form = re.compile(re.escape(prefix) + r"(.+) \[" + re.escape(unit) + r"\]")
-            if unit == "m^2/s":
-                label, table = smooth_discharge(label, table)
-            found = [(match[1], table[name]) for name in table if name != "t [s]" and (match := form.fullmatch(name))]
-            if found and any(np.isfinite(values).any() for _, values in found):
-                drawn.append((f"{label} [{unit}]", found))
-        if not drawn:
-            return
-        figure, all_axes = self.stack(len(drawn))
-        for axes, (label, lines) in zip(all_axes, drawn):
-            for name, values in lines:
-                axes.plot(table["t [s]"], values, lw=1, label=name)
-            axes.set_ylabel(label)
-            axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=8)
-        self.save(figure, f"{kind}.png")
+    def tables(self):
+        """The curves of each table in a figure of its own, those of one quantity in a panel."""
+        panels = impinge.panels(self.run)
+        for kind in dict.fromkeys(kind for kind, *_ in panels):
+            own = [panel for panel in panels if panel[0] == kind]
+            figure, all_axes = plt.subplots(len(own), 1, sharex=True, squeeze=False, layout="constrained", figsize=(8, 1 + 2.4 * len(own)))
+            all_axes[0, 0].set_title(self.run.name, fontsize=10)
+            all_axes[-1, 0].set_xlabel("t [s]")
+            for axes, (_, label, time, lines) in zip(all_axes[:, 0], own):
+                for name, values in lines.items():
+                    axes.plot(time, values, lw=1, label=name)
+                axes.set_ylabel(label)
+                if kind != "history":
+                    axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize=8)
+            self.save(figure, f"{kind}.png")
 
 
 class SceneFigure:
@@ -455,9 +391,9 @@ class SceneFigure:
             pieces = np.stack([grid[f"NumberOf{name}"][:] for name in ("Points", "Cells")], axis=1)
             offsets, places = grid["Offsets"][:], np.concatenate(([0, 0], pieces.sum(axis=0)))
             points, cells = grid["Points"][:], {name: grid["CellData"][name][:] for name in ("item", "number", "normal")}
-            words = text(file.attrs["items"]).split("\n")
-            self.names = {word: text(names).split("\n") for word, names in file["names"].attrs.items()}
-            self.case, dimension = text(file.attrs["name"]), int(file.attrs["dimension"])
+            words = impinge.text_of(file.attrs["items"]).split("\n")
+            self.names = {word: impinge.text_of(names).split("\n") for word, names in file["names"].attrs.items()}
+            self.case, dimension = impinge.text_of(file.attrs["name"]), int(file.attrs["dimension"])
             self.spacing = float(file.attrs["spacing"])
         # Each piece counts its points and cells from 0, and has one offset more than cells.
         begin, end, first = [], [], 0
@@ -551,37 +487,6 @@ class SceneFigure:
                           bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.6, "linewidth": 0})
 
 
-# Of each table, the panels: prefix and unit of their columns, and what they show.
-TABLES = {
-    "probes": [("p_", "Pa", "pressure"), ("ux_", "m/s", "$u_x$"), ("uy_", "m/s", "$u_y$"), ("uz_", "m/s", "$u_z$")],
-    "gauges": [("", "m", "level")],
-    "sections": [("", "m^2/s", "discharge"), ("total_", "m^2", "total")],
-    "outlets": [("", "1", "particles")],
-    "forces": [("fx_", "N/m", "$F_x$"), ("fy_", "N/m", "$F_y$"), ("torque_", "N", "torque")],
-}
-
-
-def smooth_discharge(label, table):
-    """Discharges from the totals over a twentieth of the run, since a row counts single particles."""
-    time = table["t [s]"]
-    window = (time[-1] - time[0]) / 20
-    smooth = dict(table)
-    for name in table:
-        if name.startswith("total_") and window > 0:
-            begin, end = np.clip(time - window / 2, time[0], time[-1]), np.clip(time + window / 2, time[0], time[-1])
-            change = np.interp(end, time, table[name]) - np.interp(begin, time, table[name])
-            smooth[name.removeprefix("total_").replace("[m^2]", "[m^2/s]")] = change / (end - begin)
-    return f"{label}, over {window:.2g} s", smooth
-
-
-def number(cell):
-    """A cell's number; words are none."""
-    try:
-        return float(cell)
-    except ValueError:
-        return np.nan
-
-
 def main():
     parser = argparse.ArgumentParser(
         prog="impinge-plot",
@@ -595,17 +500,22 @@ def main():
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument("--step", type=int, help="step of the snapshot; default: the last")
     chosen.add_argument("--time", type=float, help="time that the snapshot is nearest to [s]")
+    chosen.add_argument("--animate", action="store_true", help="draw the pressure of all snapshots as a film instead")
     arguments = parser.parse_args()
     try:
         if arguments.scene:
             SceneFigure(arguments.scene).draw(arguments.scene.with_suffix(".png"))
             return
-        if (arguments.directory / "validation/validation.json").exists():
-            run = JetRun(arguments.directory)
+        run = impinge.Run(arguments.directory, arguments.name)
+        if arguments.animate:
+            Figures(run, None, None).film()
+            return
+        if run.validation:
+            jet = JetRun(run)
             plots = (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks)
-            for plot in plots if run.has_field else (plot_wall_pressure,):
-                plot(run)
-        Figures(arguments.directory, arguments.name, arguments.step, arguments.time).draw()
+            for plot in plots if jet.has_field else (plot_wall_pressure,):
+                plot(jet)
+        Figures(run, arguments.step, arguments.time).draw()
     except (OSError, KeyError, ValueError) as error:
         sys.exit(f"impinge-plot: {error}")
 

@@ -762,9 +762,10 @@ end = [0.4, 0.6]
             self.assertEqual(done.returncode, 1)
             self.assertIn(message, done.stderr)
         # A new run sets all of it aside.
+        self.assertEqual(call(BIN / "impinge-report", "parts", cwd=self.directory).returncode, 0)
         run(path, "--set", "output.directory=parts", "--set", "time.end=0.01")
         (aside,) = (self.directory / "parts").glob("column_before_*")
-        for name in [*names, "column_figures"]:
+        for name in [*names, "column_figures", "column_report.html"]:
             self.assertTrue((aside / name).exists(), name)
         self.assertFalse((self.directory / "parts/column_figures").exists())
         self.assertEqual(len((self.directory / "parts/column_gauges.csv").read_text().splitlines()), 6)
