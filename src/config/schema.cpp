@@ -63,7 +63,8 @@ Json value_schema(const Key& key) {
         } else if constexpr (std::is_same_v<T, bool*>) {
           return {{"type", "boolean"}};
         } else if constexpr (std::is_same_v<T, std::string*>) {
-          return {{"type", "string"}, {"minLength", 1}, {"not", {{"pattern", "[\\u0000-\\u001f\\u007f]"}}}};
+          return {
+              {"type", "string"}, {"minLength", 1}, {"not", {{"pattern", "[\\u0000-\\u001f\\u007f\\ufffe\\uffff]"}}}};
         } else if constexpr (std::is_same_v<T, Word>) {
           return {{"type", "string"}, {"enum", target.words}};
         } else if constexpr (std::is_same_v<T, List>) {

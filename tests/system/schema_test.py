@@ -18,9 +18,11 @@ import unittest
 
 import jsonschema
 
+sys.setrecursionlimit(50_000)  # for tables nested by the thousand
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN, UNIT_TESTS = (pathlib.Path(sys.argv.pop(1)).resolve() for _ in range(2))
-NOTING = "Case.*:Scene*:*Region*:Observer*:Wall*:Motion*:Inlet*:Outlet*"
+NOTING = "Case.*:Scene*:FluidRegion.*:ObserverKeys.*"
 
 # What a schema can find, as the program tells it.
 CAN_FIND = re.compile(
@@ -35,8 +37,8 @@ CAN_FIND = re.compile(
     r"|has \d+ numbers, but the dimension is"
     r"|tables; allowed: at most"
 )
-# JSON has no such numbers, and takes 2.0 for an integer.
-CANNOT_FIND = re.compile(r"= \[?[^a-z]*(inf|nan)\b|= \d+\.0: not an integer")
+# JSON has no such numbers, and takes 2.0 for an integer: cases that are left out.
+NOT_JSON = re.compile(r"= \[?[^a-z]*(inf|nan)\b|= \d+\.0: not an integer")
 
 
 @functools.cache
@@ -69,7 +71,7 @@ def read(path):
 
 @functools.cache
 def noted_cases():
-    """Pairs of a case and its mistakes; the files of a case that is not TOML are None."""
+    """Each case that is TOML and has a counterpart in JSON, with its files and mistakes."""
     with tempfile.TemporaryDirectory() as directory:
         path = pathlib.Path(directory, "cases")
         environment = os.environ | {"IMPINGE_NOTED_CASES": str(path)}
@@ -77,11 +79,9 @@ def noted_cases():
         lines = [json.loads(line) for line in path.read_text().splitlines()]
     cases = []
     for line in lines:
-        try:
-            case = functools.reduce(lambda late, early: over(early, late), map(tomllib.loads, reversed(line["files"])))
-        except (tomllib.TOMLDecodeError, RecursionError):
-            case = None
-        cases.append((case, line["files"], line["mistakes"]))
+        if not any("not TOML" in text or NOT_JSON.search(text) for text in line["mistakes"]):
+            tables = [tomllib.loads(text) for text in line["files"]]
+            cases.append((functools.reduce(over, tables), line["files"], line["mistakes"]))
     return cases
 
 
@@ -98,16 +98,17 @@ class Schema(unittest.TestCase):
 
     def test_agrees_with_the_program(self):
         sound = refused = 0
+        differences = []
         for case, files, mistakes in noted_cases():
-            if case is None:
-                continue
             found = errors_in(case)
-            expected = [text for text in mistakes if CAN_FIND.search(text) and not CANNOT_FIND.search(text)]
-            self.assertEqual(bool(found), bool(expected), f"{files}\nprogram: {mistakes}\nschema: {found}"[:2000])
+            expected = [text for text in mistakes if CAN_FIND.search(text)]
+            if bool(found) != bool(expected):
+                differences.append(f"{files}\nprogram: {mistakes}\nschema: {found}"[:1000])
             sound += not mistakes
             refused += bool(expected)
-        self.assertGreater(sound, 30)
-        self.assertGreater(refused, 80)
+        self.assertEqual(differences, [], "\n\n".join(differences))
+        self.assertGreater(sound, 20)
+        self.assertGreater(refused, 50)
 
     def test_names_the_key_of_each_mistake(self):
         for text, part in (
