@@ -11,7 +11,8 @@ packages=(
   libopenmpi-dev openmpi-bin libpetsc-real-dev petsc-dev libhdf5-openmpi-dev libmetis-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev clang-format
-  python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9 python3-jsonschema
+  python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9
+  python3-jsonschema python3-markdown-it
 )
 tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg)
 

@@ -20,6 +20,10 @@ install(DIRECTORY docs input TYPE DOC)
 
 set(CPACK_PACKAGE_CONTACT "Impinge maintainers <maintainers@users.noreply.h-seed-b7950a59.example>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGE_DESCRIPTION
+    "Impinge computes jets, dam breaks, sloshing and other flows with a free surface
+on any number of MPI ranks. impinge-validate measures a jet against the exact
+solution, impinge-plot draws a run.")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
                                                 WORLD_EXECUTE)

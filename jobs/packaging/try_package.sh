@@ -43,7 +43,7 @@ found=$(zsh -f -c 'zmodload zsh/zpty; zpty shell zsh -f -i
   while zpty -r -t shell line; do print -r -- $line; done')
 [[ $found == *kernel.type=non_singular* ]] || { echo "zsh completes to: $found"; exit 1; }
 
-apt-get purge -y -qq impinge
+apt-get remove -y -qq impinge
 cd /
 rm -rf "$folder"
 list_files | diff "$before" - || { echo "left behind"; exit 1; }
