@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "impinge/config/schema.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/scenes/scenes.hpp"
 
@@ -176,6 +177,13 @@ std::string describe_keys() {
   Keys keys(c.dimension);
   declare(keys, c);
   return describe(keys);
+}
+
+std::string schema_of_keys() {
+  Case c;
+  Keys keys(c.dimension);
+  declare(keys, c);
+  return schema(keys);
 }
 
 void check_writable(const Case& config) {

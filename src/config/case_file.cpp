@@ -245,7 +245,7 @@ void Reader::add_value(const std::string& name, const toml::node& node, Place pl
 }
 
 void Reader::add_tables(Key& list, const toml::array& tables, const Place& place) {
-  constexpr std::size_t most = 10'000;
+  constexpr std::size_t most = List::most_tables;
   if (tables.size() > most) {
     keys_.mistake(place, fmt::format("{}: {} tables; allowed: at most {}", list.name, tables.size(), most));
     return;
@@ -528,16 +528,13 @@ std::string resolved_text(const Keys& keys) {
 }
 
 std::string describe(Keys& keys) {
-  std::string text =
+  std::string text = fmt::format(
       "Keys of a case file (TOML), each with what is allowed and its default.\n"
-      "include = \"FILE\" at the top of a case file takes that file's values as defaults; FILE is relative to the case "
-      "file.\n";
+      "include = \"FILE\" at the top of a case file {}.\n",
+      include_doc);
   const auto write = [&](const Key& key, std::string_view name, std::string_view only) {
-    const std::string fallback = key.about.required           ? "required"
-                                 : key.about.fallback.empty() ? "default " + keys.value_text(key)
-                                                              : "default " + key.about.fallback;
-    text += fmt::format("  {:<29} {}: {}; {}{}{}\n  {:<29} {}\n", name, type_text(key), allowed_text(key), fallback,
-                        only.empty() ? "" : "; ", only, "", key.doc);
+    text += fmt::format("  {:<29} {}: {}; {}{}{}\n  {:<29} {}\n", name, type_text(key), allowed_text(key),
+                        keys.default_text(key), only.empty() ? "" : "; ", only, "", key.doc);
   };
   for (const std::string& table : tables_of(keys)) {
     std::vector<const Key*> own;

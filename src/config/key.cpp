@@ -151,6 +151,11 @@ std::string Keys::value_text(const Key& key, std::string_view separator) const {
       key.target);
 }
 
+std::string Keys::default_text(const Key& key) const {
+  if (key.about.required) return "required";
+  return "default " + (key.about.fallback.empty() ? value_text(key) : key.about.fallback);
+}
+
 void Keys::mistake(const Place& place, std::string_view text) {
   mistakes_.emplace_back(place, fmt::format("{}: {}", place.text(), text));
 }

@@ -1,13 +1,16 @@
 #include "impinge/programs/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 
 #include "impinge/cases/case.hpp"
+#include "impinge/cases/new_cases.hpp"
 #include "impinge/observe/history.hpp"
+#include "impinge/programs/program_directory.hpp"
 
 namespace impinge {
 namespace {
@@ -40,6 +43,21 @@ bool may_be_value(const std::string& word) {
   return !is_petsc_option(word) && !word.starts_with("--") && word != "-h" && !word.ends_with(".toml");
 }
 
+std::vector<std::string> names_of_new_cases() {
+  std::vector<std::string> names;
+  for (const NewCase& one : new_cases()) names.emplace_back(one.name);
+  return names;
+}
+
+/// A case to start from. Where the schema is built or installed, the first line names it for editors.
+std::string new_case(const std::string& name) {
+  const auto schema = program_directory().parent_path() / "share/impinge/impinge.schema.json";
+  std::error_code error;
+  return fmt::format("{}{}",
+                     std::filesystem::exists(schema, error) ? fmt::format("#:schema {}\n", schema.string()) : "",
+                     std::ranges::find(new_cases(), name, &NewCase::name)->text);
+}
+
 }  // namespace
 
 CommandLine parse_command_line(const std::vector<std::string>& arguments) {
@@ -60,7 +78,8 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
       throw InputError(
           {fmt::format("command line: {}: options of PETSc have a single dash: {}", word, word.substr(1))});
 
-  bool describe = false;
+  bool describe = false, schema = false;
+  std::string new_name;
   CLI::App app(description, "impinge");
   app.get_formatter()->column_width(32);
   app.footer(footer);
@@ -69,6 +88,11 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   app.add_flag("--describe", describe,
                "Print every key of a case file and every column of the history with unit and meaning")
       ->disable_flag_override();
+  app.add_flag("--schema", schema, "Print a JSON schema of case files, by which editors check and complete them")
+      ->disable_flag_override();
+  app.add_option("--new", new_name, "Print a case to start from")
+      ->option_text(fmt::format("{}", fmt::join(names_of_new_cases(), "|")))
+      ->check(CLI::IsMember(names_of_new_cases()).description(""));
   app.add_flag("--check", line.check,
                "Validate the case; print its particles, memory, scene and time step limits; draw the scene")
       ->disable_flag_override();
@@ -93,6 +117,8 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
     std::ranges::reverse(own);  // CLI11 takes the words from the back
     app.parse(own);
     if (describe) line.text = describe_keys() + "\n" + describe_history();
+    if (schema) line.text = schema_of_keys();
+    if (!new_name.empty()) line.text = new_case(new_name);
   } catch (const CLI::CallForHelp&) {
     line.text = app.help();
   } catch (const CLI::CallForVersion& version) {

@@ -9,10 +9,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <string_view>
 
 #include "impinge/core/errors.hpp"
+#include "impinge/programs/program_directory.hpp"
 
 namespace impinge {
 namespace {
@@ -40,7 +40,7 @@ std::vector<std::string> environment_without_mpi() {
 }  // namespace
 
 bool draw(const std::vector<std::string>& arguments) {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "impinge-plot";
+  const auto program = program_directory() / "impinge-plot";
   std::vector<std::string> words{program.string()}, environment = environment_without_mpi();
   words.insert(words.end(), arguments.begin(), arguments.end());
   pid_t child = 0;

@@ -21,7 +21,8 @@ namespace {
 
 enum ExitCode { done = 0, broken = 1, wrong_input = 2, failed_solve = 3, stopped = 4 };
 
-/// Prints what --help, --version or --describe ask for; false for any other command line. MPI need not work.
+/// Prints what --help, --version, --describe, --schema or --new ask for; false for any other command line. MPI need not
+/// work.
 bool print_text(int argc, char** argv) {
   try {
     const std::string text = impinge::parse_command_line({argv + 1, argv + argc}).text;

@@ -23,6 +23,8 @@ import pathlib
 import shutil
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "share/impinge"))
+
 try:
     import h5py
     import matplotlib

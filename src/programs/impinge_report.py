@@ -21,6 +21,9 @@ import re
 import shlex
 import sys
 
+SHARE = pathlib.Path(__file__).resolve().parents[1] / "share/impinge"
+sys.path.insert(0, str(SHARE))
+
 try:
     import matplotlib
     import numpy as np
@@ -386,7 +389,7 @@ def write_page(run):
         "data": json.dumps(data, allow_nan=False).replace("</", "<\\/"),
         "frames": "".join(f'<script type="text/plain" class="frame">{text}</script>\n' for text in frames.packed),
     }
-    template = pathlib.Path(__file__).resolve().with_name("report.html").read_text(encoding="utf-8")
+    template = (SHARE / "report.html").read_text(encoding="utf-8")
     page = re.sub(r"@([a-z]+)@", lambda match: values[match[1]], template)
     path = run.file("_report.html")
     partial = path.with_name(path.name + ".partial")

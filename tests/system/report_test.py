@@ -19,7 +19,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(sys.argv.pop(1)).resolve()
-sys.path.insert(0, str(BIN))
+sys.path.insert(0, str(BIN.parent / "share/impinge"))
 import impinge  # noqa: E402
 
 COLUMN = """geometry = "tank"

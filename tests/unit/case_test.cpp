@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "impinge/core/errors.hpp"
+#include "case_mistakes.hpp"
 
 namespace impinge {
 namespace {
@@ -56,7 +56,7 @@ Texts mistakes(Action action) {
 }
 
 Texts mistakes_in(const std::string& text, const NamedText& base = jet_base, const Texts& settings = {}) {
-  return mistakes([&] { parse(text, base, settings); });
+  return case_mistakes({{"case.toml", text}, base}, settings);
 }
 
 /// An empty directory for one test.

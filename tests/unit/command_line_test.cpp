@@ -4,12 +4,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
 #include "impinge/cases/case.hpp"
+#include "impinge/cases/new_cases.hpp"
 #include "impinge/observe/history.hpp"
 
 namespace impinge {
 namespace {
 
+namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 std::string mistake_in(const Words& arguments) {
@@ -68,9 +76,9 @@ TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
   for (const Words& arguments :
        {Words{"--help"}, Words{"-h"}, Words{"-log_view", "-h"}, Words{"case.toml", "--help"}}) {
     const std::string text = parse_command_line(arguments).text;
-    for (const char* part : {"--set", "--check", "--plan RANKS", "--describe", "--version", "CASE.toml",
-                             "-ppe_ksp_type cg", "-ppe_pc_type two_level|hypre|gamg", "-ppe_ksp_monitor", "-log_view",
-                             "2 wrong input", "--restart DIR", "4 ended by a signal"}) {
+    for (const char* part : {"--set", "--check", "--plan RANKS", "--describe", "--schema", "--new jet|", "--version",
+                             "CASE.toml", "-ppe_ksp_type cg", "-ppe_pc_type two_level|hypre|gamg", "-ppe_ksp_monitor",
+                             "-log_view", "2 wrong input", "--restart DIR", "4 ended by a signal"}) {
       EXPECT_NE(text.find(part), text.npos) << part;
     }
   }
@@ -79,6 +87,32 @@ TEST(CommandLine, HelpNamesOptionsAndExitCodes) {
 TEST(CommandLine, PrintsVersionAndKeys) {
   EXPECT_EQ(parse_command_line({"--version"}).text, "impinge " IMPINGE_VERSION "\n");
   EXPECT_EQ(parse_command_line({"--describe"}).text, describe_keys() + "\n" + describe_history());
+  EXPECT_EQ(parse_command_line({"--schema"}).text, schema_of_keys());
+}
+
+TEST(CommandLine, PrintsCasesToStartFrom) {
+  std::set<std::string> offered;
+  for (const NewCase& one : new_cases()) {
+    const std::string name(one.name), text = parse_command_line({"--new", name}).text;
+    EXPECT_TRUE(text.ends_with(one.text)) << name;
+    EXPECT_TRUE(text.starts_with("# ") || text.starts_with("#:schema /")) << name;
+    EXPECT_EQ(parse_case({{name + ".toml", text}}).name, name);
+    offered.insert(std::string(one.text));
+  }
+  for (const char* name : {"jet", "dam-break", "sloshing"})
+    EXPECT_EQ(std::ranges::count(new_cases(), name, &NewCase::name), 1);
+  // Every shipped case that needs no other file.
+  std::set<std::string> shipped;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(__FILE__).parent_path() / "../../input")) {
+    if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "common") continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    if (text.str().find("\ninclude = ") == std::string::npos) shipped.insert(text.str());
+  }
+  EXPECT_EQ(offered, shipped);
+  const std::string mistake = mistake_in({"--new", "tsunami"});
+  EXPECT_TRUE(mistake.starts_with("command line: --new: tsunami not in {jet,dam-break,sloshing,")) << mistake;
+  EXPECT_NE(mistake_in({"--new"}), "");
 }
 
 TEST(CommandLine, FindsMistakes) {

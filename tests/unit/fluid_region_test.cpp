@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "impinge/cases/case.hpp"
+#include "case_mistakes.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/scenes/scenes.hpp"
 
@@ -30,12 +30,7 @@ Case scene_case(const std::string& regions, const std::string& before = head) {
 }
 
 std::vector<std::string> mistakes_in(const std::string& regions, const std::string& before = head) {
-  try {
-    scene_case(regions, before);
-  } catch (const InputError& error) {
-    return error.mistakes();
-  }
-  return {};
+  return case_mistakes({{"case.toml", before + regions}});
 }
 
 /// The one mistake has the text in it.

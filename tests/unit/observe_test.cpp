@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impinge/cases/case.hpp"
+#include "case_mistakes.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/observe/fluid_value.hpp"
 #include "impinge/observe/observer_report.hpp"
@@ -338,14 +338,7 @@ fluid.gravity = [0.0, -9.81]
 
 Case parse(const std::string& text) { return parse_case({{"case.toml", tank + text}}); }
 
-Texts mistakes_in(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const InputError& error) {
-    return error.mistakes();
-  }
-  return {};
-}
+Texts mistakes_in(const std::string& text) { return case_mistakes({{"case.toml", tank + text}}); }
 
 TEST(ObserverKeys, HaveDefaultsAndReadBack) {
   const Case config = parse(R"([[probe]]

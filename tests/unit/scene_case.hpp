@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "impinge/cases/case.hpp"
-#include "impinge/core/errors.hpp"
+#include "case_mistakes.hpp"
 #include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
@@ -21,12 +20,7 @@ inline Case scene_case(const std::string& text, const std::vector<std::string>& 
 }
 
 inline std::vector<std::string> scene_mistakes(const std::string& text, const std::vector<std::string>& settings = {}) {
-  try {
-    scene_case(text, settings);
-  } catch (const InputError& error) {
-    return error.mistakes();
-  }
-  return {};
+  return case_mistakes({{"case.toml", scene_head + text}}, settings);
 }
 
 /// The one mistake has the text in it.

@@ -53,6 +53,9 @@ bool are_of_one_run(const NamedText& one, const NamedText& other);
 /// Every key with type, unit, default, range and doc line, as a text for the terminal.
 std::string describe_keys();
 
+/// Every key as a JSON schema of case files.
+std::string schema_of_keys();
+
 /// Creates the output directory where it does not exist and tries a file in it. Touches the disk; not collective.
 /// Throws InputError that names the place of output.directory and the reason.
 void check_writable(const Case& config);

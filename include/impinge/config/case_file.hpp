@@ -13,6 +13,9 @@ namespace impinge {
 /// A file's name and its text.
 using NamedText = std::pair<std::string, std::string>;
 
+/// What the key `include` does, which the files have beside the declared keys.
+constexpr std::string_view include_doc = "takes that file's values as defaults; FILE is relative to the case file";
+
 /// What is wrong with a text that files shall hold and give back, XML among them: it is empty, too long, not UTF-8, or
 /// has control characters. Nothing if all is well.
 std::string text_problem(std::string_view text);

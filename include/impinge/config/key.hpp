@@ -108,6 +108,8 @@ struct Word {
 
 /// A list of tables: what a new element is, and which keys it has.
 struct List {
+  static constexpr std::size_t most_tables = 10'000;
+
   std::function<std::size_t()> size;
   std::function<void(std::size_t)> resize;
   std::function<void(Keys&, std::size_t)> declare;
@@ -230,7 +232,10 @@ class Keys {
   void resize(Key& list, const std::vector<Place>& places);
   /// The setting's value as TOML; `separator` stands between the items of an array.
   std::string value_text(const Key& key, std::string_view separator = ", ") const;
+  /// "required"; "default 0.25"; "default 0.8 x time.end".
+  std::string default_text(const Key& key) const;
   int dimension() const { return *dimension_; }
+  const Key& dimension_key() const { return of(*dimension_); }
   bool dimension_is_usable() const { return usable(*dimension_); }
 
   /// True if no mistake has been found so far.

@@ -18,9 +18,9 @@ struct CommandLine {
 };
 
 /// Parses `CASE.toml [--set key=value ...] [--check | --plan RANKS] [-petsc_option [value] ...]`, `--restart DIR`
-/// instead of the case, or --help, --describe, --version. `arguments` has no program name. A word of '-' and a letter
-/// goes to PETSc, and so does the word after it unless that is an option too or ends in .toml. Touches no file. Throws
-/// InputError.
+/// instead of the case, or --help, --describe, --schema, --new NAME, --version. `arguments` has no program name. A word
+/// of '-' and a letter goes to PETSc, and so does the word after it unless that is an option too or ends in .toml.
+/// Reads no file. Throws InputError.
 CommandLine parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace impinge

@@ -1,0 +1,36 @@
+# What `cmake --install` and the .deb put where. All places are relative to the prefix, and the programs find each other
+# and the schema from their own place: an installation can be moved.
+
+include(GNUInstallDirs)
+set(IMPINGE_ZSH_DIRECTORY ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING "Where completions of zsh go")
+
+# Libraries outside of the system's directories, as a cluster's modules have them, are found again.
+set_target_properties(impinge impinge-validate PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+
+install(TARGETS impinge impinge-validate)
+install(PROGRAMS ${python_programs} TYPE BIN)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ TYPE MAN)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion TYPE DATA)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/zsh/site-functions/ DESTINATION ${IMPINGE_ZSH_DIRECTORY})
+install(FILES ${schema} src/programs/impinge.py src/programs/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/impinge)
+# Documents and cases keep their places to each other, so that their links hold.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE jobs/packaging/CITATION.cff TYPE DOC)
+install(FILES LICENSE TYPE DOC RENAME copyright)  # where Debian looks for it
+install(DIRECTORY docs input TYPE DOC)
+
+set(CPACK_PACKAGE_CONTACT "Impinge maintainers <maintainers@users.noreply.h-seed-b7950a59.example>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGE_DESCRIPTION
+    "Impinge computes jets, dam breaks, sloshing and other flows with a free surface
+on any number of MPI ranks. impinge-validate measures a jet against the exact
+solution, impinge-plot draws a run,
+impinge-report writes a page about it.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+                                                WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, python3, python3-h5py, python3-matplotlib, python3-numpy, libjs-dygraphs, libjs-three")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, paraview")
+include(CPack)
