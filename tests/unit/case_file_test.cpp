@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "impinge/config/schema.hpp"
 #include "impinge/core/errors.hpp"
 
 namespace impinge {
@@ -372,6 +374,31 @@ TEST(CaseFile, DescribesTheKeysOfAListOnce) {
                                 stroke
 )")) << text;
   EXPECT_EQ(text.find("[box]"), text.rfind("[box]"));
+}
+
+/// The whole agreement with the reader is tested by tests/system/schema_test.py, with the keys of a case.
+TEST(CaseFile, TheSchemaHasListsDottedNamesAndConditions) {
+  using Json = nlohmann::json;
+  Read none;
+  const Json schema = Json::parse(impinge::schema(none.keys));
+  const Json &top = schema["properties"], &box = top["box"]["properties"], &gate = box["gate"]["items"];
+  EXPECT_EQ(schema["additionalProperties"], false);
+  EXPECT_EQ(top["box"]["additionalProperties"], false);
+  EXPECT_EQ(box["length"]["exclusiveMinimum"], 0.0);
+  EXPECT_EQ(box["length"]["description"], "a length\n\na number: > 0 (m). Default 1.0.");
+  EXPECT_EQ(box["late"]["default"], 7.0);
+  EXPECT_EQ(top["other"]["properties"]["weights"]["items"],
+            Json::parse(R"({"type": "number", "minimum": 0, "maximum": 1})"));
+  EXPECT_EQ(gate["properties"]["motion"]["properties"]["amplitude"]["minimum"], 0.0);
+  EXPECT_EQ(gate["properties"]["points"]["description"],
+            "corners\n\nan array of points: points of one number per dimension, each any finite number (m). Required. "
+            "Only with form \"outline\".");
+  EXPECT_EQ(gate["then"]["allOf"], Json::parse(R"([
+    {"if": {"properties": {"form": {"enum": ["outline"]}}, "required": ["form"]}, "then": {"properties": {"radius": false}}},
+    {"if": {"properties": {"form": {"enum": ["circle", "arc"]}}, "required": ["form"]}, "then": {"properties": {"points": false}}},
+    {"if": {"properties": {"form": {"enum": ["circle", "arc"]}}, "required": ["form"]}, "then": {"required": ["radius"]}},
+    {"if": {"properties": {"form": {"enum": ["outline"]}}, "required": ["form"]}, "then": {"required": ["points"]}},
+    {"required": ["form"]}])"));
 }
 
 TEST(CaseFile, AKeyIsDeclaredOnce) {
