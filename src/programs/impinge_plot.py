@@ -24,6 +24,7 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "share/impinge"))
+sys.dont_write_bytecode = True  # an installation is removed whole
 
 try:
     import h5py

@@ -23,6 +23,7 @@ import sys
 
 SHARE = pathlib.Path(__file__).resolve().parents[1] / "share/impinge"
 sys.path.insert(0, str(SHARE))
+sys.dont_write_bytecode = True  # an installation is removed whole
 
 try:
     import matplotlib

@@ -52,6 +52,7 @@ class Install(unittest.TestCase):
         self.assertTrue((self.folder / "output/my/my_figures/pressure.png").exists())
         output_of(self.program("impinge-report"), "output/my", cwd=self.folder)
         self.assertTrue((self.folder / "output/my/my_report.html").exists())
+        self.assertEqual(list(self.prefix.rglob("__pycache__")), [])
 
     def test_each_program_has_a_page_and_completions_with_its_options(self):
         self.assertGreaterEqual(len(self.programs), 4)
