@@ -14,6 +14,7 @@ packages=(
   python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9
   libjs-dygraphs libjs-three
   python3-jsonschema python3-markdown-it
+  file
 )
 tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg chromium chromium-driver python3-selenium ffmpeg)
 

@@ -4,6 +4,7 @@
 # Usage: jobs/packaging/try_package.sh FILE.deb
 set -euo pipefail
 package=$(realpath "$1")
+unset PYTHONDONTWRITEBYTECODE  # Python may leave files behind
 export DEBIAN_FRONTEND=noninteractive OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
 apt-get update -qq
@@ -24,9 +25,11 @@ impinge jet.toml "${coarse[@]}" --set output.directory=alone > /dev/null
 mpirun --oversubscribe -n 2 impinge jet.toml "${coarse[@]}"
 impinge-validate output/jet
 impinge-plot output/jet
-ls output/jet/validation/*.png output/jet/jet_figures/*.png
+impinge-report output/jet
+python3 -c 'import impinge; print(impinge.Run("output/jet").snapshot().pressure.max(), "Pa")'
+ls output/jet/jet_report.html output/jet/validation/*.png output/jet/jet_figures/*.png
 
-for page in impinge impinge-validate impinge-plot impinge-case; do
+for page in impinge impinge-validate impinge-plot impinge-report impinge-case; do
   MANWIDTH=100 man --warnings "$page" > page.txt 2> warnings.txt
   grep -q "^NAME" page.txt
   if [ -s warnings.txt ]; then cat warnings.txt; exit 1; fi

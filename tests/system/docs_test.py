@@ -128,8 +128,8 @@ class Documents(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             (folder / "input").symlink_to(ROOT / "input")
-            (folder / "build/release").mkdir(parents=True)
-            (folder / "build/release/bin").symlink_to(BIN)
+            (folder / "build").mkdir()
+            (folder / "build/release").symlink_to(BIN.parent)
             environment = os.environ | {"PATH": f"{BIN}:{os.environ['PATH']}", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
             def run(line):
@@ -139,6 +139,7 @@ class Documents(unittest.TestCase):
 
             # What jobs/quickstart.sh leaves.
             run(f"impinge input/jet60-quick.toml --set output.directory=output/jet60-quick {FEW_STEPS}")
+            run("impinge-validate output/jet60-quick --no-figures")
             count = 0
             for document in DOCUMENTS:
                 shown = document.relative_to(ROOT).as_posix()
@@ -153,6 +154,10 @@ class Documents(unittest.TestCase):
                         run(line.replace("/tmp/", f"{folder}/") + f" {FEW_STEPS}" * runs)
                     count += 1
                 for number, block in enumerate(blocks(document)):
+                    if block.startswith("import "):
+                        (folder / "shown.py").write_text(block)
+                        with self.subTest(document=shown, block=block):
+                            run("PYTHONPATH=build/release/share/impinge /usr/bin/python3 shown.py")
                     case = case_in(block)
                     if case is None:
                         continue

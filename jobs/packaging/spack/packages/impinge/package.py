@@ -49,6 +49,9 @@ class Impinge(CMakePackage):
 
     generator("ninja")
 
+    def setup_run_environment(self, env):
+        env.prepend_path("PYTHONPATH", self.prefix.share.impinge)
+
     def cmake_args(self):
         # Spack's compiler wrapper names the processor.
         return [self.define("IMPINGE_NATIVE", False), self.define_from_variant("BUILD_TESTING", "tests")]
