@@ -2,6 +2,7 @@
 """What `cmake --install` gives. Usage: install_test.py BUILD_DIRECTORY [unittest options]"""
 
 import gzip
+import os
 import pathlib
 import re
 import subprocess
@@ -10,6 +11,7 @@ import tempfile
 import unittest
 
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # else no program could leave any
 
 
 def output_of(*words, cwd=None):
