@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # From a fresh checkout to a validated jet: installs what is missing, builds, runs input/jet60-quick.toml on 2 ranks,
-# measures the result against the analytic jet, draws it, and writes a page to open in a browser. About two minutes after the installs.
+# measures the result against the analytic jet, draws it, and writes a page to open in a browser. About two minutes after
+# the installs.
 # Usage: jobs/quickstart.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -36,6 +36,15 @@ class Option:
         parts = re.split(r"[|,]", self.value.strip("{}"))
         return parts if len(parts) > 1 else []
 
+    @property
+    def kind(self):
+        """What its value is, for the completions: words, a case, a directory, a file, a setting, or none of these."""
+        if self.choices:
+            return "words"
+        if self.value.endswith(".toml"):
+            return "case"
+        return {"DIR": "directory", "directory": "directory", "FILE": "file", "KEY=VALUE": "setting"}.get(self.value)
+
 
 class Help:
     """What a program's --help says."""
@@ -150,32 +159,31 @@ def function_of(program):
     return "_" + program.replace("-", "_")
 
 
+def words_of(key):
+    """The words that the value of a key can be, by its schema; none where it is no word."""
+    return key.get("enum") or (["false", "true"] if key.get("type") == "boolean" else [])
+
+
 def bash_values(option, keys):
-    """Lines that complete the value of an option."""
-    if option.choices:
-        return f'choices="{" ".join(option.choices)}"'
-    if option.value.endswith(".toml"):
-        return 'files=(-o plusdirs -f -X "!*.toml")'
-    if option.value in ("DIR", "directory"):
-        return "files=(-d)"
-    if option.value == "FILE":
-        return "files=(-f)"
-    if option.value == "KEY=VALUE":
-        return f'compopt -o nospace; choices="{" ".join(name + "=" for name in keys)}"'
-    return "return"
+    """What completes the value of an option."""
+    return {
+        "words": f'choices="{" ".join(option.choices)}"',
+        "case": 'files=(-o plusdirs -f -X "!*.toml")',
+        "directory": "files=(-d)",
+        "file": "files=(-f)",
+        "setting": f'compopt -o nospace; choices="{" ".join(name + "=" for name in keys)}"',
+    }.get(option.kind, "return")
 
 
 def bash_completion(program, found, keys):
     options = [option for option in found.options if option.names]
-    words = {name: key["enum"] for name, key in keys.items() if "enum" in key}
-    words |= {name: ["false", "true"] for name, key in keys.items() if key.get("type") == "boolean"}
     text = f"""# bash completion of {program}
 {function_of(program)}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} choices= key=
   local -a files=()
   COMPREPLY=()
 """
-    if any(option.value == "KEY=VALUE" for option in options):
+    if any(option.kind == "setting" for option in options):
         text += """  if [ "$word" = = ]; then
     key=$before word=
   elif [ "$before" = = ]; then
@@ -184,7 +192,8 @@ def bash_completion(program, found, keys):
   case $key in
     "") ;;
 """
-        text += "".join(f'    {name}) choices="{" ".join(values)}" ;;\n' for name, values in words.items())
+        words = ((name, words_of(key)) for name, key in keys.items())
+        text += "".join(f'    {name}) choices="{" ".join(values)}" ;;\n' for name, values in words if values)
         text += "    *) return ;;\n  esac\n"
     text += '  [ -n "$key" ] || case $before in\n'
     for option in options:
@@ -205,15 +214,13 @@ complete -F {function_of(program)} {program}
 
 
 def zsh_action(program, option):
-    if option.choices:
-        return f"({' '.join(option.choices)})"
-    if option.value.endswith(".toml"):
-        return '_files -g "*.toml"'
-    if option.value in ("DIR", "directory"):
-        return "_files -/"
-    if option.value == "FILE":
-        return "_files"
-    return f"{function_of(program)}_keys" if option.value == "KEY=VALUE" else " "
+    return {
+        "words": f"({' '.join(option.choices)})",
+        "case": '_files -g "*.toml"',
+        "directory": "_files -/",
+        "file": "_files",
+        "setting": f"{function_of(program)}_keys",
+    }.get(option.kind, " ")
 
 
 def zsh_completion(program, found, keys):
@@ -231,10 +238,10 @@ def zsh_completion(program, found, keys):
             others = "*" if "may be repeated" in option.doc else f"({' '.join(option.names)})"
             rows.append(quoted(f"{others}{one}[{doc}]{value}"))
     text = f"#compdef {program}\n"
-    if any(option.value == "KEY=VALUE" for option in found.options):
+    if any(option.kind == "setting" for option in found.options):
         text += f"{function_of(program)}_keys() {{\n  if compset -P '*='; then\n    case ${{IPREFIX%=}} in\n"
         for name, key in keys.items():
-            values = key.get("enum") or (["false", "true"] if key.get("type") == "boolean" else [])
+            values = words_of(key)
             text += f"      {name}) compadd {' '.join(values)} ;;\n" if values else ""
         text += "    esac\n  else\n    compadd -q -S = " + " ".join(keys) + "\n  fi\n}\n"
     return text + "_arguments -S \\\n" + " \\\n".join(f"  '{row}'" for row in rows) + "\n"

@@ -62,6 +62,14 @@ std::vector<std::string> unused_petsc_options() {
   return unused;
 }
 
+bool set_default_option(const std::string& option, const std::string& value) {
+  PetscBool given = PETSC_FALSE;
+  petsc_check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+  if (given) return false;
+  petsc_check(PetscOptionsSetValue(nullptr, option.c_str(), value.c_str()));
+  return true;
+}
+
 std::string petsc_version() {
   PetscInt major = 0, minor = 0, subminor = 0;
   petsc_check(PetscGetVersionNumber(&major, &minor, &subminor, nullptr));

@@ -188,17 +188,17 @@ Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> positi
   if (gradient[self] == Matrix<Dim>{}) return {};
   const Vector<Dim> centre = position[self];
   const Vector<Dim> own = velocity[self];
-  Vector<Dim> differences, offsets;
+  Vector<Dim> differences, offset_sum;
   Matrix<Dim> products;  // of the gradients' columns with the offsets' components
   for_pairs(near, i, [&](std::size_t j, double weight) {
     if (j >= gradient.size() || gradient[j] == Matrix<Dim>{}) return;
     const Vector<Dim> offset = weight * (position[j] - centre);
     differences += weight * (velocity[j] - own);
-    offsets += offset;
+    offset_sum += offset;
     for (std::size_t k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) products.row[k][l] += gradient[j].row[k][l] * offset[l];
   });
-  Vector<Dim> linear = gradient[self] * offsets;
+  Vector<Dim> linear = gradient[self] * offset_sum;
   for (int k = 0; k < Dim; ++k)
     for (int l = 0; l < Dim; ++l) linear[k] += products.row[static_cast<std::size_t>(k)][l];
   return 1.0 / n0 * (differences - 0.5 * linear);

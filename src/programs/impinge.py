@@ -101,6 +101,11 @@ class Table(dict):
         return self["t"]
 
 
+def sheet_ends(x):
+    """Where the columns of a profile along a plate pass the gap between its two sheets: the first row beyond."""
+    return np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else np.array([], int)
+
+
 def smooth_discharge(table):
     """The discharges from the totals over a twentieth of the run, since a row counts single particles; that time [s]."""
     time = table["t"]
@@ -293,6 +298,24 @@ class Run:
     outlets = property(lambda self: self.table("outlets"))
 
     @property
+    def observers(self):
+        """Fixed probes, gauges and sections: kind, name and points, in the run's frame."""
+        marks = []
+        for kind in ("probe", "gauge", "section"):
+            for item in self.case.get(kind, []):
+                if kind == "probe" and item["wall"] == "none":
+                    points = [item["position"]]
+                elif kind == "gauge":
+                    way = np.array(item["direction"]) / np.linalg.norm(item["direction"])
+                    points = [item["point"], list(np.array(item["point"]) + item["length"] * way)]
+                elif kind == "section":
+                    points = [item["begin"], item["end"]]
+                else:
+                    continue
+                marks.append({"kind": kind, "name": item["name"], "points": points})
+        return marks
+
+    @functools.cached_property
     def validation(self):
         """What impinge-validate has written of the run; None where it has not."""
         folder = self.directory / "validation"

@@ -170,8 +170,7 @@ def plot_profile(run, table, computed, analytic, y_label, name, note):
     """A profile along the plate, computed and analytic."""
     figure, axes = plt.subplots(layout="constrained", figsize=(8, 4))
     x = table["x"] / run.width
-    # Lines stop at the gap between the two sheets.
-    gap = np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else []
+    gap = impinge.sheet_ends(x)  # where lines stop
     for column, style in (
         (computed, dict(color=COMPUTED, marker=".", ms=4, lw=0.8, label="computed")),
         (analytic, dict(color=ANALYTIC, lw=1.4, label="analytic")),
@@ -336,22 +335,12 @@ class Figures:
 
     def mark_observers(self, axes):
         """Fixed probes, gauges and sections."""
-        case = self.run.case
         seen = [0, 2] if self.snapshot.dimension == 3 else [0, 1]
-
-        def corner(vector):
-            return np.array(vector, dtype=float)[seen]
-
-        for probe in case.get("probe", []):
-            if probe["wall"] == "none":
-                axes.plot(*corner(probe["position"]), "x", color="black", ms=7, mew=1.5)
-        lines = [(gauge["point"], gauge["point"] + gauge["length"] * np.array(gauge["direction"]) / np.linalg.norm(gauge["direction"]), "--")
-                 for gauge in case.get("gauge", [])]
-        lines += [(section["begin"], section["end"], ":") for section in case.get("section", [])]
-        for begin, end, style in lines:
-            axes.plot(*zip(corner(begin), corner(end)), style, color="black", lw=1)
+        styles = {"probe": dict(marker="x", ls="", ms=7, mew=1.5), "gauge": dict(ls="--", lw=1), "section": dict(ls=":", lw=1)}
+        for mark in self.run.observers:
+            axes.plot(*np.array(mark["points"], dtype=float)[:, seen].T, color="black", **styles[mark["kind"]])
         for kind, style in (("probe", "x"), ("gauge", "--"), ("section", ":")):
-            if case.get(kind):
+            if self.run.case.get(kind):
                 axes.plot([], [], style, color="black", label=kind)
 
     def tables(self):

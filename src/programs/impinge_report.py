@@ -160,24 +160,6 @@ class Frames:
         return " ".join(notes)
 
 
-def observers(run):
-    """Fixed probes, gauges and sections: their names and points, in the run's frame."""
-    marks = []
-    for kind in ("probe", "gauge", "section"):
-        for item in run.case.get(kind, []):
-            if kind == "probe" and item["wall"] == "none":
-                points = [item["position"]]
-            elif kind == "gauge":
-                way = np.array(item["direction"]) / np.linalg.norm(item["direction"])
-                points = [item["point"], list(np.array(item["point"]) + item["length"] * way)]
-            elif kind == "section":
-                points = [item["begin"], item["end"]]
-            else:
-                continue
-            marks.append({"kind": kind, "name": item["name"], "points": points})
-    return marks
-
-
 def exact_surface(validation):
     """The lines of the exact free surface, in the run's frame."""
     lines = validation.surface if validation else None
@@ -213,8 +195,7 @@ def charts(run):
         if profile:
             lines = {name: profile[column] for name, column in (("exact", "analytic"), ("computed", label)) if np.isfinite(profile[column]).any()}
             x = profile["x"]
-            # Lines stop at the gap between the two sheets.
-            gaps = np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else np.array([], int)
+            gaps = impinge.sheet_ends(x)  # where lines stop
             lines = {name: np.insert(values, gaps, np.nan) for name, values in lines.items()}
             result.append(chart("validation", f"{title} [{profile.units[label]}]", "x [m]", np.insert(x, gaps, x[gaps]), lines))
     return result
@@ -371,7 +352,7 @@ def write_page(run):
         "dimension": frames.dimension, "spacing": run.spacing, "share": frames.share, "low": frames.low.tolist(),
         "high": frames.high.tolist(), "seen": [corner.tolist() for corner in frames.seen], "times": frames.times, "steps": frames.steps, "counts": frames.counts, "ranks": frames.ranks,
         "range": frames.range, "colours": {"pressure": colours("viridis"), "speed": colours("cividis")},
-        "marks": observers(run) + exact_surface(run.validation), "charts": charts(run),
+        "marks": run.observers + exact_surface(run.validation), "charts": charts(run),
     }
     scene = picture(run.file("_scene.png"), "the scene at the start")
     scene = f"<section><h2>Scene at the start</h2>{scene}</section>" if scene else ""

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/particles/particles.hpp"
@@ -22,16 +23,17 @@ std::vector<T> gather(MPI_Comm comm, const std::vector<T>& own) {
   return all;
 }
 
-/// `field` of the owned particles of all ranks, by id. Collective.
+/// `field` of the owned particles of all ranks, or of those of a type, by id. Collective.
 template <int Dim, class T>
-std::map<std::int64_t, T> gather_by_id(MPI_Comm comm, const Particles<Dim>& particles, const std::vector<T>& field) {
+std::map<std::int64_t, T> gather_by_id(MPI_Comm comm, const Particles<Dim>& particles, const std::vector<T>& field,
+                                       std::optional<ParticleType> type = std::nullopt) {
   struct Item {
     std::int64_t id;
     T value;
   };
   std::vector<Item> own;
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
-    own.push_back({particles.id[i], field[i]});
+    if (!type || particles.type[i] == *type) own.push_back({particles.id[i], field[i]});
   std::map<std::int64_t, T> result;
   for (const Item& item : gather(comm, own)) result.emplace(item.id, item.value);
   return result;

@@ -39,17 +39,8 @@ Vector<2> force_on(const Simulation<2>& simulation, const Scene<2>& walls, int w
 
 /// Positions of the fluid of all ranks, by id. Collective.
 std::map<std::int64_t, Vector<2>> fluid_places(const Simulation<2>& simulation) {
-  struct Item {
-    std::int64_t id;
-    Vector<2> place;
-  };
-  std::vector<Item> own;
   const Particles<2>& particles = simulation.particles();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
-    if (particles.type[i] == ParticleType::fluid) own.push_back({particles.id[i], particles.position[i]});
-  std::map<std::int64_t, Vector<2>> places;
-  for (const Item& item : gather(comm, own)) places.emplace(item.id, item.place);
-  return places;
+  return gather_by_id(comm, particles, particles.position, ParticleType::fluid);
 }
 
 TEST(Walls, CarryTheWeightOfTheWaterInAVBottom) {

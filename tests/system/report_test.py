@@ -22,27 +22,7 @@ BIN = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(BIN.parent / "share/impinge"))
 import impinge  # noqa: E402
 
-COLUMN = """geometry = "tank"
-particles.spacing = 0.04
-fluid.gravity = [0, -9.81]
-tank.size = [1.0, 0.6]
-time = {end = 0.2, dt = 2e-3}
-output = {interval = 0.05, average_start = 0.1}
-[[fluid.region]]
-shape = "box"
-low = [0, 0]
-high = [0.4, 0.32]
-[[probe]]
-name = "floor"
-position = [0.2, 0]
-[[gauge]]
-point = [0.2, 0]
-length = 0.6
-[[section]]
-name = "gate"
-begin = [0.4, 0]
-end = [0.4, 0.6]
-"""
+COLUMN = (ROOT / "tests/system/column.toml").read_text()
 
 
 def call(*words, environment=None):
@@ -83,7 +63,7 @@ class Runs(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         cls.root = pathlib.Path(temporary.name)
         cls.column = cls.root / "column"
-        compute(cls.root / "column.toml", COLUMN, cls.column)
+        compute(cls.root / "column.toml", COLUMN, cls.column, "--set", "output.interval=0.05", "--set", "output.average_start=0.1")
 
     def copy_of_column(self):
         directory = pathlib.Path(tempfile.mkdtemp(dir=self.root))

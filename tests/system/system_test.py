@@ -703,27 +703,7 @@ class Run(System):
         self.assertIn("it has 0 inlets. Measured are: ", done.stderr)
 
     def test_what_is_observed_goes_on_after_a_restart_and_is_drawn(self):
-        path = self.directory / "column.toml"
-        path.write_text("""geometry = "tank"
-particles.spacing = 0.04
-fluid.gravity = [0, -9.81]
-tank.size = [1.0, 0.6]
-time = {end = 0.2, dt = 2e-3}
-[[fluid.region]]
-shape = "box"
-low = [0, 0]
-high = [0.4, 0.32]
-[[probe]]
-name = "floor"
-position = [0.2, 0]
-[[gauge]]
-point = [0.2, 0]
-length = 0.6
-[[section]]
-name = "gate"
-begin = [0.4, 0]
-end = [0.4, 0.6]
-""")
+        path = ROOT / "tests/system/column.toml"
         names = [f"column_{kind}.csv" for kind in ("history", "probes", "gauges", "sections")]
 
         def run(*words):

@@ -90,6 +90,9 @@ using PetscVector = PetscHandle<::Vec, VecDestroy>;
 using PetscSolver = PetscHandle<KSP, KSPDestroy>;
 using PetscForest = PetscHandle<PetscSF, PetscSFDestroy>;
 
+/// Sets an option, named with its dash, unless the user has; true if it did.
+bool set_default_option(const std::string& option, const std::string& value);
+
 /// Attributes the time between construction and destruction to one -log_view stage.
 class LogStage {
  public:

@@ -29,8 +29,8 @@ template <int Dim>
 Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 
 /// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice.
-/// Where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface), L_i is zero; what it is
-/// given to then does without.
+/// L_i is zero where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface). Operators that
+/// are given zero do not correct.
 template <int Dim>
 Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 

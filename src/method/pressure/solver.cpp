@@ -53,12 +53,16 @@ PressureSolver::PressureSolver(MPI_Comm comm, double tolerance) : comm_(comm), t
   char chosen[64] = "";
   petsc_check(PetscOptionsGetString(nullptr, prefix, "-pc_type", chosen, sizeof chosen, nullptr));
   if (std::string(chosen) == "hypre") {
-    set_default_option("pc_hypre_boomeramg_coarsen_type", "HMIS");
-    set_default_option("pc_hypre_boomeramg_interp_type", "ext+i");
-    set_default_option("pc_hypre_boomeramg_P_max", "4");
-    set_default_option("pc_hypre_boomeramg_agg_nl", "1");
-    set_default_option("pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi");
-    set_default_option("pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi");
+    const auto prefer = [&](const char* name, const char* value) {
+      const std::string option = fmt::format("-{}{}", prefix, name);
+      if (set_default_option(option, value)) default_options_.push_back(option);
+    };
+    prefer("pc_hypre_boomeramg_coarsen_type", "HMIS");
+    prefer("pc_hypre_boomeramg_interp_type", "ext+i");
+    prefer("pc_hypre_boomeramg_P_max", "4");
+    prefer("pc_hypre_boomeramg_agg_nl", "1");
+    prefer("pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi");
+    prefer("pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi");
   }
   create_solver();
 }
@@ -80,15 +84,6 @@ PC PressureSolver::preconditioner() const {
   PC result = nullptr;
   petsc_check(KSPGetPC(solver_, &result));
   return result;
-}
-
-void PressureSolver::set_default_option(const char* name, const char* value) {
-  const std::string option = fmt::format("-{}{}", prefix, name);
-  PetscBool given = PETSC_FALSE;
-  petsc_check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
-  if (given) return;
-  petsc_check(PetscOptionsSetValue(nullptr, option.c_str(), value));
-  default_options_.push_back(option);
 }
 
 void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo) {

@@ -1,10 +1,9 @@
 #include "impinge/method/pressure/two_level.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <utility>
+#include <string>
 
 namespace impinge {
 namespace {
@@ -79,20 +78,15 @@ void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
   petsc_check(PCSetType(preconditioner, PCHYPRE));
   // BoomerAMG's own smoother, Jacobi between ranks, is indefinite where few particles tie nodes of two ranks together.
   // In 3D the levels fill: aggressive coarsening, with a stronger smoother, takes as many iterations and less time.
-  const std::array defaults{
-      std::pair("-ppe_coarse_pc_hypre_boomeramg_relax_type_all", Dim == 3 ? "l1scaled-SOR/Jacobi" : "l1scaled-Jacobi"),
-      std::pair("-ppe_coarse_pc_hypre_boomeramg_agg_nl", Dim == 3 ? "1" : "0"),
+  std::vector<std::string> preferred;
+  const auto prefer = [&](const std::string& name, const char* value) {
+    const std::string option = "-ppe_coarse_pc_hypre_boomeramg_" + name;
+    if (set_default_option(option, value)) preferred.push_back(option);
   };
-  std::vector<const char*> added;
-  for (const auto& [option, value] : defaults) {
-    PetscBool given = PETSC_FALSE;
-    petsc_check(PetscOptionsHasName(nullptr, nullptr, option, &given));
-    if (given) continue;
-    petsc_check(PetscOptionsSetValue(nullptr, option, value));
-    added.push_back(option);
-  }
+  prefer("relax_type_all", Dim == 3 ? "l1scaled-SOR/Jacobi" : "l1scaled-Jacobi");
+  if (Dim == 3) prefer("agg_nl", "1");
   petsc_check(KSPSetFromOptions(coarse_solver_));
-  for (const char* option : added) petsc_check(PetscOptionsClearValue(nullptr, option));
+  for (const std::string& option : preferred) petsc_check(PetscOptionsClearValue(nullptr, option.c_str()));
 }
 
 template <int Dim>

@@ -92,7 +92,6 @@ class PressureSolver {
 
  private:
   void create_solver();
-  void set_default_option(const char* name, const char* value);
   void append_row(const PressureEquation& equation, int i, const PressureEquation::Row& row);
   template <class Test>
   bool any_later(std::size_t i, Test&& test) const;
