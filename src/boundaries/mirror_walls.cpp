@@ -8,7 +8,8 @@ namespace {
 
 constexpr double right_angle = 1e-9;    // largest product of the normals of two faces that meet at a right angle
 constexpr double displacement = 1e-10;  // of a particle's own image, so that its line misses the edge it aims at [dp]
-constexpr double least_share = 0.5;     // of a pair at an arc
+constexpr double nearly_right = 0.2;    // cosine of the angle between a curved face and a flat one that it meets
+constexpr double least_share = 0.5;     // of a pair at a curved face
 constexpr double most_share = 2.0;
 
 template <int Dim>
@@ -80,7 +81,7 @@ int MirrorWalls<Dim>::way_of(const MirrorPath& path, const Reflection<Dim>& whol
   const auto moves = [&](int f) { return faces_.moves(f); };
   const auto holds = [&](int f) { return !faces_.slips(f); };
   const bool all_hold = std::ranges::all_of(path.faces(), holds);
-  ways_.push_back({path, whole, std::ranges::any_of(path.faces(), moves), all_hold});
+  ways_.push_back({path, whole, std::ranges::any_of(path.faces(), moves), all_hold, {}});
   const int number = static_cast<int>(ways_.size()) - 1;
   known_.emplace(path, number);
   return number;
@@ -124,60 +125,114 @@ void MirrorWalls<Dim>::append_images(Particles<Dim>& particles) {
     tested_[i] = faces_.has_tests(position_[i]) || std::ranges::any_of(faces_.around(position_[i]), is_hiding) ? 1 : 0;
 }
 
+// Where curved faces are nearest to the particles before them, and to images of these at flat faces that meet a curved
+// one at a right angle: there the image of the foot is the foot of the image.
+template <int Dim>
+void MirrorWalls<Dim>::find_feet(const Particles<Dim>& particles) {
+  feet_.clear();
+  foot_start_.assign(1, 0);
+  for (int i = 0; i < first_own_image_; ++i) {
+    const auto self = static_cast<std::size_t>(i);
+    if (i < first_image_) {
+      const ParticleType type = particles.type[self];
+      const bool has_row = i < particles.owned && (type == ParticleType::fluid || type == ParticleType::wall);
+      Foot<Dim> foot;
+      if (has_row || type != ParticleType::wall)
+        for (const int f : faces_.around(particles.position[self]))
+          if (!faces_.is_flat(f) && faces_.find_foot(f, particles.position[self], foot)) feet_.push_back({f, foot});
+    } else if constexpr (Dim == 3) {
+      const std::size_t image = self - static_cast<std::size_t>(first_image_);
+      const bool has_room = way(image).path.count < MirrorPath::longest;
+      const auto original = static_cast<std::size_t>(original_[image]);
+      for (int k = foot_start_[original]; has_room && k < foot_start_[original + 1]; ++k) {
+        auto [face, foot] = feet_[static_cast<std::size_t>(k)];
+        const auto is_beside = [&](int f) { return std::abs(dot(faces_.plane(f).normal, foot.normal)) < nearly_right; };
+        if (!std::ranges::all_of(way(image).path.faces(), is_beside)) continue;
+        const Reflection<Dim>& mirror = reflection(image);
+        foot.point = mirror.of_position(foot.point);
+        foot.normal = mirror.linear * foot.normal;
+        foot.bending = product(mirror, product(Reflection<Dim>{foot.bending, {}}, mirror)).linear;
+        feet_.push_back({face, foot});
+      }
+    }
+    foot_start_.push_back(static_cast<int>(feet_.size()));
+  }
+}
+
+template <int Dim>
+std::span<const typename MirrorWalls<Dim>::FaceFoot> MirrorWalls<Dim>::feet(int i) const {
+  const auto first = static_cast<std::size_t>(foot_start_[static_cast<std::size_t>(i)]);
+  return std::span(feet_).subspan(first,
+                                  static_cast<std::size_t>(foot_start_[static_cast<std::size_t>(i) + 1]) - first);
+}
+
+// What walls leave of a pair that meets at a curved face.
+template <int Dim>
+double MirrorWalls<Dim>::own_factor(int i, int j, int face, const Meeting<Dim>& meeting) const {
+  const auto self = static_cast<std::size_t>(i), other = static_cast<std::size_t>(j);
+  if (j >= first_image_) {
+    // The face is seen before a flat one or, in it, behind.
+    Vector<Dim> hit = meeting.plane.point;
+    for (const int f : way(other - static_cast<std::size_t>(first_image_)).path.faces())
+      if (faces_.plane(f).distance(hit) < 0.0) hit = reflection_at(faces_.plane(f)).of_position(hit);
+    return faces_.holds(face, hit) ? 1.0 : 0.0;
+  }
+  if (!tested_[self]) return faces_.holds(face, meeting.plane.point) ? 1.0 : 0.0;
+  const Reflection<Dim> reflection = reflection_at(meeting.plane);
+  const Vector<Dim>&here = position_[self], &there = position_[other];
+  const MirrorPath path = MirrorPath{}.then(face);
+  return id_[self] <= id_[other] ? faces_.path_factor(here, reflection.of_position(there), path, meeting.plane)
+                                 : faces_.path_factor(there, reflection.of_position(here), path, meeting.plane);
+}
+
 template <int Dim>
 void MirrorWalls<Dim>::append_own_images(const std::function<std::span<const int>(int)>& around,
                                          Particles<Dim>& particles) {
-  if constexpr (Dim == 2) {
-    if (!faces_.has_arcs()) return;
-    own_start_.assign(1, 0);
-    for (int i = 0; i < particles.owned; ++i) {
-      const auto self = static_cast<std::size_t>(i);
-      const Vector<2>& here = particles.position[self];
-      for (const int f : faces_.around(here)) {
-        const ParticleType type = particles.type[self];
-        if (type != ParticleType::fluid && type != ParticleType::wall) break;
-        const double height = faces_.height(f, here);
-        if (faces_.is_flat(f) || !(height > 0.0) || faces_.distance(f, here) >= reach_) continue;
-        for (const int j : around(i)) {
-          if (j >= first_image_ || particles.type[static_cast<std::size_t>(j)] == ParticleType::wall) continue;
-          const Vector<2>& there = particles.position[static_cast<std::size_t>(j)];
-          const double other_height = faces_.height(f, there);
-          if (!(other_height > 0.0)) continue;
-          const Face<2> plane =
-              faces_.tangent_plane(f, 1.0 / (height + other_height) * (other_height * here + height * there));
-          const Reflection<2> reflection = reflection_at(plane);
-          const Vector<2> image = reflection.of_position(there);
-          const double length = norm(image - here);
-          if (length >= reach_) continue;
-          const MirrorPath path = MirrorPath{}.then(f);
-          double share = faces_.ray_share(f, plane, here, there, length);
-          share = std::clamp(share, least_share, most_share);
-          if (tested_[self]) {
-            share *= particles.id[self] <= particles.id[static_cast<std::size_t>(j)]
-                         ? faces_.path_factor(here, image, path, plane)
-                         : faces_.path_factor(there, reflection.of_position(here), path, plane);
-          } else if (!faces_.holds(f, plane.point)) {
-            share = 0.0;
-          }
-          if (share == 0.0) continue;
-          own_.push_back({first_image_ + static_cast<int>(original_.size()), share});
+  if (!faces_.has_curves()) return;
+  find_feet(particles);
+  own_start_.assign(1, 0);
+  for (int i = 0; i < particles.owned; ++i) {
+    const Vector<Dim>& here = particles.position[static_cast<std::size_t>(i)];
+    for (const auto& [f, foot] : feet(i)) {
+      for (const int j : around(i)) {
+        const auto other = static_cast<std::size_t>(j);
+        if (j >= first_own_image_ || particles.type[other] == ParticleType::wall) continue;
+        const auto found = std::ranges::find(feet(j), f, &FaceFoot::face);
+        if (found == feet(j).end()) continue;
+        const Vector<Dim>& there = particles.position[other];
+        const Meeting<Dim> meeting = faces_.meeting(f, here, foot, there, found->foot);
+        const Reflection<Dim> at_face = reflection_at(meeting.plane);
+        if (norm(at_face.of_position(there) - here) >= reach_) continue;
+        double share = std::clamp(meeting.share, least_share, most_share);
+        share *= own_factor(i, j, f, meeting);
+        if (share == 0.0) continue;
+        own_.push_back({first_image_ + static_cast<int>(original_.size()), share});
+        way_.push_back(static_cast<int>(ways_.size()));
+        if (j < first_image_) {
           original_.push_back(j);
-          way_.push_back(static_cast<int>(ways_.size()));
-          ways_.push_back({path, reflection, faces_.moves(f), !faces_.slips(f)});
+          ways_.push_back({MirrorPath{}.then(f), at_face, faces_.moves(f), !faces_.slips(f), meeting.plane});
+        } else {
+          const std::size_t image = other - static_cast<std::size_t>(first_image_);
+          const Way flat = way(image);
+          MirrorPath path = MirrorPath{}.then(f);
+          for (const int g : flat.path.faces()) path = path.then(g);
+          original_.push_back(original_[image]);
+          ways_.push_back({path, product(at_face, flat.whole), flat.moves || faces_.moves(f),
+                           flat.holds && !faces_.slips(f), meeting.plane});
         }
       }
-      own_start_.push_back(static_cast<int>(own_.size()));
     }
-    particles.resize(first_image_ + static_cast<int>(original_.size()));
-    for_images([&](std::size_t k, std::size_t at, std::size_t from) {
-      if (static_cast<int>(at) < first_own_image_) return;
-      particles.set_record(static_cast<int>(at), particles.record(static_cast<int>(from)));
-      particles.position[at] = reflection(k).of_position(particles.position[from]);
-      particles.velocity[at] = velocity_of(k, particles.position[from], particles.velocity[from]);
-    });
-    position_ = particles.position;
-    id_ = particles.id;
+    own_start_.push_back(static_cast<int>(own_.size()));
   }
+  particles.resize(first_image_ + static_cast<int>(original_.size()));
+  for_images([&](std::size_t k, std::size_t at, std::size_t from) {
+    if (static_cast<int>(at) < first_own_image_) return;
+    particles.set_record(static_cast<int>(at), particles.record(static_cast<int>(from)));
+    particles.position[at] = reflection(k).of_position(particles.position[from]);
+    particles.velocity[at] = velocity_of(k, particles.position[from], particles.velocity[from]);
+  });
+  position_ = particles.position;
+  id_ = particles.id;
 }
 
 // Calls use(face, its reflection, place before, place behind) for the faces on the way from an image's original.
@@ -188,7 +243,9 @@ void MirrorWalls<Dim>::along(std::size_t image, const Vector<Dim>& from, Use&& u
   Vector<Dim> place = from;
   for (int k = here.path.count; k-- > 0;) {
     const int f = here.path.face[static_cast<std::size_t>(k)];
-    const Reflection<Dim> single = here.path.count == 1 ? here.whole : reflection_at(faces_.plane(f));
+    const Reflection<Dim> single = here.path.count == 1 ? here.whole
+                                   : faces_.is_flat(f)  ? reflection_at(faces_.plane(f))
+                                                        : reflection_at(here.plane);
     const Vector<Dim> next = single.of_position(place);
     use(f, single, place, next);
     place = next;
@@ -269,10 +326,12 @@ double MirrorWalls<Dim>::factor(int i, int j) const {
     end = {};
     const Vector<Dim> offset = here - to.whole.shift;
     for (int k = 0; k < Dim; ++k) end += offset[k] * to.whole.linear.row[static_cast<std::size_t>(k)];
-  } else if (static_cast<std::size_t>(i) == original && to.path.count > 1) {
-    end[0] += 0.6 * displacement * spacing_;
-    end[1] += 0.8 * displacement * spacing_;
+  } else if constexpr (Dim == 2) {
+    if (static_cast<std::size_t>(i) == original && to.path.count > 1)
+      end += displacement * spacing_ * Vector<2>{{0.6, 0.8}};
   }
+  if constexpr (Dim == 3)
+    if (to.path.count > 1) end += displacement * spacing_ * Vector<3>{{0.36, 0.48, 0.8}};
   if (to.path.count == 1) return faces_.path_factor(begin, end, to.path, {});
   double sum = 0.0;
   for (const MirrorPath& path : same_paths(faces_, to.path))

@@ -10,49 +10,89 @@
 namespace impinge {
 namespace {
 
-/// Displacement along x and y [m] and angle [rad], with their first and second derivatives in time.
+/// Displacement [m] and angle [rad], with their first and second derivatives in time.
 struct Course {
-  using Values = std::array<double, 3>;
+  using Values = std::array<double, 4>;  // the angle is the last
   Values value{}, first{}, second{};
 
   Course at_rest() const { return {.value = value}; }
 };
 
-Pose<2> pose_of(const Course& course, const Vector<2>& center) {
-  const auto shift = [](const Course::Values& x) { return Vector<2>{{x[0], x[1]}}; };
-  const double cosine = std::cos(course.value[2]), sine = std::sin(course.value[2]);
-  const double spin = course.first[2];
-  Pose<2> pose;
-  pose.rotation = {{{{{cosine, -sine}}, {{sine, cosine}}}}};
-  pose.spin = {{{{{0.0, -spin}}, {{spin, 0.0}}}}};
-  pose.bend = {{{{{-spin * spin, -course.second[2]}}, {{course.second[2], -spin * spin}}}}};
-  const Vector<2> moved_center = center + shift(course.value);
-  pose.shift = moved_center - pose.rotation * center;
+template <int Dim>
+Course::Values values_of(const Vector<Dim>& shift, double angle) {
+  Course::Values values{};
+  std::copy(shift.component.begin(), shift.component.end(), values.begin());
+  values.back() = angle;
+  return values;
+}
+
+/// The matrix that takes x to rate axis x x [1/s].
+template <int Dim>
+Matrix<Dim> spin_about(const Vector<3>& axis, double rate) {
+  if constexpr (Dim == 2) {
+    return {{{{{0.0, -rate}}, {{rate, 0.0}}}}};
+  } else {
+    const Vector<3> spin = rate * axis;
+    return {{{{{0.0, -spin[2], spin[1]}}, {{spin[2], 0.0, -spin[0]}}, {{-spin[1], spin[0], 0.0}}}}};
+  }
+}
+
+template <int Dim>
+Matrix<Dim> turned(const Vector<3>& axis, double angle) {
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  Matrix<Dim> result = spin_about<Dim>(axis, sine);
+  for (int k = 0; k < Dim; ++k) {
+    result.row[static_cast<std::size_t>(k)][k] += cosine;
+    if constexpr (Dim == 3) result.row[static_cast<std::size_t>(k)] += (1.0 - cosine) * axis[k] * axis;
+  }
+  return result;
+}
+
+template <int Dim>
+Pose<Dim> pose_of(const Course& course, const MotionFrame<Dim>& frame) {
+  const auto shift = [](const Course::Values& x) {
+    Vector<Dim> result;
+    std::copy_n(x.begin(), Dim, result.component.begin());
+    return result;
+  };
+  const double spin = course.first.back();
+  Pose<Dim> pose;
+  pose.rotation = turned<Dim>(frame.axis, course.value.back());
+  pose.spin = spin_about<Dim>(frame.axis, spin);
+  // spin' + spin spin, of which the latter is spin^2 (axis axis^T - 1).
+  pose.bend = spin_about<Dim>(frame.axis, course.second.back());
+  for (int k = 0; k < Dim; ++k) {
+    pose.bend.row[static_cast<std::size_t>(k)][k] -= spin * spin;
+    if constexpr (Dim == 3) pose.bend.row[static_cast<std::size_t>(k)] += spin * spin * frame.axis[k] * frame.axis;
+  }
+  const Vector<Dim> moved_center = frame.center + shift(course.value);
+  pose.shift = moved_center - pose.rotation * frame.center;
   pose.velocity = shift(course.first) - pose.spin * moved_center;
   pose.acceleration = shift(course.second) - pose.bend * moved_center;
   return pose;
 }
 
 /// `course` takes the time since the start.
-template <class CourseOf>
-Motion<2> motion_by(const MotionFrame& frame, CourseOf course) {
+template <int Dim, class CourseOf>
+Motion<Dim> motion_by(const MotionFrame<Dim>& frame, CourseOf course) {
   return [frame, course](double time) {
-    if (time < frame.start) return pose_of(course(0.0).at_rest(), frame.center);
-    if (time > frame.end) return pose_of(course(frame.end - frame.start).at_rest(), frame.center);
-    return pose_of(course(time - frame.start), frame.center);
+    if (time < frame.start) return pose_of(course(0.0).at_rest(), frame);
+    if (time > frame.end) return pose_of(course(frame.end - frame.start).at_rest(), frame);
+    return pose_of(course(time - frame.start), frame);
   };
 }
 
 /// A cubic spline with zero slope at its ends, through values at rising times.
 class Spline {
  public:
-  explicit Spline(const std::vector<MotionPoint>& points) {
-    for (const MotionPoint& point : points) {
+  template <int Dim>
+  explicit Spline(const std::vector<MotionPoint<Dim>>& points) {
+    for (const MotionPoint<Dim>& point : points) {
       times_.push_back(point.time);
-      values_.push_back({point.shift[0], point.shift[1], point.angle});
+      values_.push_back(values_of(point.shift, point.angle));
     }
     slopes_.resize(times_.size());
-    for (std::size_t k = 0; k < 3; ++k) solve(k);
+    for (std::size_t k = 0; k < Course::Values{}.size(); ++k) solve(k);
   }
 
   Course operator()(double time) const {
@@ -62,7 +102,7 @@ class Spline {
     const auto i = static_cast<std::size_t>(after - times_.begin()) - 1;
     const double step = times_[i + 1] - times_[i], s = (time - times_[i]) / step;
     Course course;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < course.value.size(); ++k) {
       // Hermite's form: v + s (a + s (b + s c)).
       const double rise = values_[i + 1][k] - values_[i][k];
       const double a = step * slopes_[i][k], last = step * slopes_[i + 1][k];
@@ -97,14 +137,15 @@ class Spline {
 
 }  // namespace
 
-Motion<2> steady_motion(const MotionFrame& frame, const Vector<2>& velocity, double spin) {
+template <int Dim>
+Motion<Dim> steady_motion(const MotionFrame<Dim>& frame, const Vector<Dim>& velocity, double spin) {
   return motion_by(frame, [=](double time) {
-    return Course{.value = {velocity[0] * time, velocity[1] * time, spin * time},
-                  .first = {velocity[0], velocity[1], spin}};
+    return Course{.value = values_of(time * velocity, spin * time), .first = values_of(velocity, spin)};
   });
 }
 
-Motion<2> harmonic_motion(const MotionFrame& frame, const Oscillation& oscillation) {
+template <int Dim>
+Motion<Dim> harmonic_motion(const MotionFrame<Dim>& frame, const Oscillation<Dim>& oscillation) {
   return motion_by(frame, [=](double time) {
     const double rate = 2.0 * std::numbers::pi * oscillation.frequency;
     const double sine = std::sin(rate * time + oscillation.phase), cosine = std::cos(rate * time + oscillation.phase);
@@ -119,16 +160,24 @@ Motion<2> harmonic_motion(const MotionFrame& frame, const Oscillation& oscillati
     const double first = slope * sine + rise * rate * cosine;
     const double second = bend * sine + 2.0 * slope * rate * cosine - rise * rate * rate * sine;
     const auto scaled = [&](double factor) {
-      return Course::Values{factor * oscillation.amplitude[0], factor * oscillation.amplitude[1],
-                            factor * oscillation.angle};
+      return values_of(factor * oscillation.amplitude, factor * oscillation.angle);
     };
     return Course{.value = scaled(value), .first = scaled(first), .second = scaled(second)};
   });
 }
 
-Motion<2> table_motion(const MotionFrame& frame, const std::vector<MotionPoint>& points) {
+template <int Dim>
+Motion<Dim> table_motion(const MotionFrame<Dim>& frame, const std::vector<MotionPoint<Dim>>& points) {
   const auto spline = std::make_shared<const Spline>(points);
   return motion_by(frame, [spline](double time) { return (*spline)(time); });
 }
+
+#define IMPINGE_INSTANTIATE(Dim)                                                           \
+  template Motion<Dim> steady_motion(const MotionFrame<Dim>&, const Vector<Dim>&, double); \
+  template Motion<Dim> harmonic_motion(const MotionFrame<Dim>&, const Oscillation<Dim>&);  \
+  template Motion<Dim> table_motion(const MotionFrame<Dim>&, const std::vector<MotionPoint<Dim>>&);
+IMPINGE_INSTANTIATE(2)
+IMPINGE_INSTANTIATE(3)
+#undef IMPINGE_INSTANTIATE
 
 }  // namespace impinge

@@ -107,7 +107,7 @@ Case parse(const std::vector<NamedText>& all, const std::vector<std::string>& se
   declare(keys, c);
   if (read_files(keys, files, settings)) {
     const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid, c.time, c.walls};
-    take_motion_tables(keys, tables, c.motions);
+    if (keys.usable(c.dimension)) take_motion_tables(keys, c.dimension, tables, c.motions);
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }

@@ -289,13 +289,9 @@ void Simulation<Dim>::move_walls(double time, double velocity_time) {
 
 template <int Dim>
 Vector<Dim> Simulation<Dim>::wall_point_at(std::int64_t id, double time) const {
-  if constexpr (Dim == 2) {
-    const WallPoint& point = scene_.wall_points[static_cast<std::size_t>(id)];
-    const Wall& wall = scene_.walls[static_cast<std::size_t>(point.wall)];
-    return wall.motion ? (*wall.motion)(time).of_position(point.position) : point.position;
-  } else {
-    return {};
-  }
+  const WallPoint<Dim>& point = scene_.wall_points[static_cast<std::size_t>(id)];
+  const Wall<Dim>& wall = scene_.walls[static_cast<std::size_t>(point.wall)];
+  return wall.motion ? (*wall.motion)(time).of_position(point.position) : point.position;
 }
 
 // Wall particles of walls that move to where these are at a time.

@@ -2,27 +2,27 @@
 
 namespace impinge {
 
-std::vector<Pose<2>> poses_of(const std::vector<Wall>& walls, double time) {
-  std::vector<Pose<2>> poses;
-  for (const Wall& wall : walls) poses.push_back(wall.motion ? (*wall.motion)(time) : Pose<2>{});
+template <int Dim>
+std::vector<Pose<Dim>> poses_of(const std::vector<Wall<Dim>>& walls, double time) {
+  std::vector<Pose<Dim>> poses;
+  for (const Wall<Dim>& wall : walls) poses.push_back(wall.motion ? (*wall.motion)(time) : Pose<Dim>{});
   return poses;
 }
 
-Vector<2> origin_of(const Pose<2>& pose, const Vector<2>& x) {
-  const Vector<2> turned = x - pose.shift;
-  Vector<2> result;
-  for (int k = 0; k < 2; ++k) result += turned[k] * pose.rotation.row[static_cast<std::size_t>(k)];
-  return result;
-}
-
-bool is_hidden(const std::vector<Wall>& walls, const std::vector<Pose<2>>& poses, const Vector<2>& from,
-               const Vector<2>& to) {
+template <int Dim>
+bool is_hidden(const std::vector<Wall<Dim>>& walls, const std::vector<Pose<Dim>>& poses, const Vector<Dim>& from,
+               const Vector<Dim>& to) {
   constexpr double clearance = 1e-3;  // share of the way that is not looked at: `from` may stand on a wall
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    const Vector<2> begin = origin_of(poses[w], from + clearance * (to - from));
-    if (walls[w].outline.first_hit(begin, origin_of(poses[w], to))) return true;
+    const Vector<Dim> begin = poses[w].origin_of(from + clearance * (to - from));
+    if (walls[w].surface->meets(begin, poses[w].origin_of(to))) return true;
   }
   return false;
 }
+
+template std::vector<Pose<2>> poses_of(const std::vector<Wall<2>>&, double);
+template std::vector<Pose<3>> poses_of(const std::vector<Wall<3>>&, double);
+template bool is_hidden(const std::vector<Wall<2>>&, const std::vector<Pose<2>>&, const Vector<2>&, const Vector<2>&);
+template bool is_hidden(const std::vector<Wall<3>>&, const std::vector<Pose<3>>&, const Vector<3>&, const Vector<3>&);
 
 }  // namespace impinge

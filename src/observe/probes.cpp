@@ -63,31 +63,28 @@ Probes<Dim>::Probes(const std::vector<ProbeSettings>& settings, const Scene<Dim>
 // distances.
 template <int Dim>
 void Probes<Dim>::ride(const ProbeSettings& settings, const Scene<Dim>& scene, Probe& probe) {
-  if constexpr (Dim == 2) {
-    const Vector<2> position = probe.points[0];
-    const WallPoint* nearest = nullptr;
-    for (const WallPoint& point : scene.wall_points)
-      if (point.wall == probe.wall &&
-          (!nearest || norm(point.position - position) < norm(nearest->position - position)))
-        nearest = &point;
-    if (!nearest) return;
-    constexpr double same_side = 0.5;  // least cosine of the angle between the normals
-    double sum = 0.0;
-    for (std::size_t k = 0; k < scene.wall_points.size(); ++k) {
-      const WallPoint& point = scene.wall_points[k];
-      if (point.wall != probe.wall || dot(point.normal, nearest->normal) < same_side) continue;
-      const double distance = norm(point.position - position);
-      const double weight = settings.diameter > 0.0 ? (2.0 * distance <= settings.diameter ? point.area : 0.0)
-                                                    : std::max(0.0, 1.0 - distance / spacing_);
-      if (weight == 0.0) continue;
-      riders_[static_cast<std::int64_t>(k)].emplace_back(probes_.size(), weight);
-      sum += weight;
-    }
-    if (sum == 0.0) riders_[nearest - scene.wall_points.data()].emplace_back(probes_.size(), 1.0);
-    // The velocity is that of the fluid in front of the surface.
-    constexpr double off_surface = 1e-3;  // [dp]
-    probe.points[0] += off_surface * spacing_ * nearest->normal;
+  const Vector<Dim> position = probe.points[0];
+  const WallPoint<Dim>* nearest = nullptr;
+  for (const WallPoint<Dim>& point : scene.wall_points)
+    if (point.wall == probe.wall && (!nearest || norm(point.position - position) < norm(nearest->position - position)))
+      nearest = &point;
+  if (!nearest) return;
+  constexpr double same_side = 0.5;  // least cosine of the angle between the normals
+  double sum = 0.0;
+  for (std::size_t k = 0; k < scene.wall_points.size(); ++k) {
+    const WallPoint<Dim>& point = scene.wall_points[k];
+    if (point.wall != probe.wall || dot(point.normal, nearest->normal) < same_side) continue;
+    const double distance = norm(point.position - position);
+    const double weight = settings.diameter > 0.0 ? (2.0 * distance <= settings.diameter ? point.area : 0.0)
+                                                  : std::max(0.0, 1.0 - distance / spacing_);
+    if (weight == 0.0) continue;
+    riders_[static_cast<std::int64_t>(k)].emplace_back(probes_.size(), weight);
+    sum += weight;
   }
+  if (sum == 0.0) riders_[nearest - scene.wall_points.data()].emplace_back(probes_.size(), 1.0);
+  // The velocity is that of the fluid in front of the surface.
+  constexpr double off_surface = 1e-3;  // [dp]
+  probe.points[0] += off_surface * spacing_ * nearest->normal;
 }
 
 template <int Dim>
@@ -103,14 +100,13 @@ std::vector<std::string> Probes<Dim>::columns() const {
 template <int Dim>
 std::vector<double> Probes<Dim>::measure(MPI_Comm comm, const Particles<Dim>& particles, double time) const {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Pose<2>> poses = poses_of(walls_, time);
+  const std::vector<Pose<Dim>> poses = poses_of(walls_, time);
   std::vector<Vector<Dim>> points;       // of all probes, now
   std::vector<std::size_t> first_point;  // of each probe
   for (const Probe& probe : probes_) {
     first_point.push_back(points.size());
     for (Vector<Dim> point : probe.points) {
-      if constexpr (Dim == 2)
-        if (probe.wall >= 0) point = poses[static_cast<std::size_t>(probe.wall)].of_position(point);
+      if (probe.wall >= 0) point = poses[static_cast<std::size_t>(probe.wall)].of_position(point);
       points.push_back(point);
     }
   }
@@ -137,8 +133,7 @@ std::vector<double> Probes<Dim>::measure(MPI_Comm comm, const Particles<Dim>& pa
       for (std::size_t k = first_point[p]; k < first_point[p + 1]; ++k) {
         const Vector<Dim> offset = offsets_(points[k], particles.position[i]);
         if (dot(offset, offset) > radius * radius) continue;
-        if constexpr (Dim == 2)
-          if (is_hidden(walls_, poses, points[k], points[k] + offset)) continue;
+        if (is_hidden(walls_, poses, points[k], points[k] + offset)) continue;
         fits[k].add(1.0 / spacing_ * offset, value);
       }
     }

@@ -64,13 +64,11 @@ template <int Dim>
 std::string wall_around(const Scene<Dim>& scene, const Vector<Dim>& point, double depth) {
   for (const Face<Dim>& face : scene.mirrors)
     if (face.distance(point) < -depth) return "a wall";
-  if constexpr (Dim == 2) {
-    const std::vector<Pose<2>> poses = poses_of(scene.walls, 0.0);
-    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-      const Wall& wall = scene.walls[w];
-      if (wall.outline.closed() && !wall.wet_left && wall.outline.distance(origin_of(poses[w], point)) < -depth)
-        return fmt::format("the wall \"{}\"", wall.name);
-    }
+  const std::vector<Pose<Dim>> poses = poses_of(scene.walls, 0.0);
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const Wall<Dim>& wall = scene.walls[w];
+    if (wall.surface->closed() && !wall.wet_back && wall.surface->distance(poses[w].origin_of(point)) < -depth)
+      return fmt::format("the wall \"{}\"", wall.name);
   }
   return "";
 }
@@ -164,15 +162,14 @@ void check_observers_in(Keys& keys, const Scene<Dim>& scene, double spacing, con
       }
       continue;
     }
-    const auto wall = std::ranges::find(scene.walls, probe.wall, &Wall::name);
+    const auto wall = std::ranges::find(scene.walls, probe.wall, &Wall<Dim>::name);
     if (wall == scene.walls.end()) {
       std::vector<std::string> names{in_quotes(no_wall)};
-      for (const Wall& one : scene.walls) names.push_back(in_quotes(one.name));
+      for (const Wall<Dim>& one : scene.walls) names.push_back(in_quotes(one.name));
       keys.mistake(probe.wall, fmt::format("no wall of this name; allowed: {}", fmt::join(names, ", ")));
-    } else if constexpr (Dim == 2) {
-      if (const double distance = wall->outline.nearest(position).distance; distance > spacing)
-        keys.mistake(probe.position, fmt::format("{:.6g} m from the wall \"{}\"; allowed: at most a spacing, {:.6g} m",
-                                                 distance, wall->name, spacing));
+    } else if (const double distance = wall->surface->nearest(position).distance; distance > spacing) {
+      keys.mistake(probe.position, fmt::format("{:.6g} m from the wall \"{}\"; allowed: at most a spacing, {:.6g} m",
+                                               distance, wall->name, spacing));
     }
   }
   for (const GaugeSettings& gauge : settings.gauges)

@@ -29,11 +29,12 @@ struct Cells {
   std::vector<std::int32_t> numbers;
   std::vector<Vector<Dim>> normals;
 
-  /// A vertex, or a line through several points.
-  void add(SceneItem item, std::size_t number, const std::vector<Vector<Dim>>& places, const Vector<Dim>& normal = {}) {
+  /// A vertex, or a line through several points, or another cell of them.
+  void add(SceneItem item, std::size_t number, const std::vector<Vector<Dim>>& places, const Vector<Dim>& normal = {},
+           std::uint8_t type = vtk_poly_line) {
     points.insert(points.end(), places.begin(), places.end());
     begin.push_back(static_cast<std::int64_t>(points.size()));
-    types.push_back(places.size() == 1 ? vtk_vertex : vtk_poly_line);
+    types.push_back(places.size() == 1 ? vtk_vertex : type);
     items.push_back(static_cast<std::uint8_t>(item));
     numbers.push_back(static_cast<std::int32_t>(number));
     normals.push_back(normal);
@@ -73,30 +74,59 @@ std::vector<Vector<2>> line_of(const Outline& outline) {
   return line;
 }
 
-void add_walls(const std::vector<Wall>& walls, Cells<2>& cells) {
+void add_walls(const std::vector<Wall<2>>& walls, Cells<2>& cells) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const Outline outline = outline_at(walls[w], 0.0);
     for (const OutlineEdge& edge : outline.edges()) {
       for_pieces(edge, [&](const Vector<2>& begin, const Vector<2>& end, const Vector<2>& normal) {
-        if (walls[w].wet_right) cells.add(SceneItem::wall, w + 1, {begin, end}, normal);
-        if (walls[w].wet_left) cells.add(SceneItem::wall, w + 1, {begin, end}, -1.0 * normal);
+        if (walls[w].wet_front) cells.add(SceneItem::wall, w + 1, {begin, end}, normal);
+        if (walls[w].wet_back) cells.add(SceneItem::wall, w + 1, {begin, end}, -1.0 * normal);
       });
     }
   }
 }
 
-void add_paths(const Case& config, const std::vector<Wall>& walls, Cells<2>& cells) {
+/// Facets, each where it stands at the start.
+void add_walls(const std::vector<Wall<3>>& walls, Cells<3>& cells) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const Pose<3> pose = walls[w].motion ? (*walls[w].motion)(0.0) : Pose<3>{};
+    for (const auto& patch : walls[w].surface->patches()) {
+      for (const Facet& facet : patch->facets()) {
+        std::vector<Vector<3>> corners;
+        for (const int corner : facet)
+          corners.push_back(pose.of_position(patch->points()[static_cast<std::size_t>(corner)]));
+        Vector<3> normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        normal *= (walls[w].wet_front ? 1.0 : -1.0) / norm(normal);
+        cells.add(SceneItem::wall, w + 1, corners, normal, vtk_triangle);
+      }
+    }
+  }
+}
+
+/// Points whose ways tell how a wall moves.
+std::vector<Vector<2>> tellers(const Outline& outline) {
+  const auto& edges = outline.edges();
+  std::vector<Vector<2>> corners{edges.back().end};
+  for (std::size_t k = outline.closed() ? 1 : 0; k < edges.size(); ++k) corners.push_back(edges[k].begin);
+  return corners;
+}
+std::vector<Vector<3>> tellers(const Mesh& mesh) {
+  std::vector<Vector<3>> corners;
+  for (int k = 0; k < 8; ++k) corners.push_back(mesh.nearest(mesh.bounds().corner(k)).point);
+  return corners;
+}
+
+template <int Dim>
+void add_paths(const Case& config, const std::vector<Wall<Dim>>& walls, Cells<Dim>& cells) {
   constexpr std::size_t most_points = 8, most_times = 400;
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const MotionEntry* entry = motion_named(config.scene_walls[w].motion, config.motions);
     if (!entry) continue;
     const std::vector<double> times = times_of(*entry, config.time.end, most_times);
-    const auto& edges = walls[w].outline.edges();
-    std::vector<Vector<2>> corners{edges.back().end};
-    for (std::size_t k = walls[w].outline.closed() ? 1 : 0; k < edges.size(); ++k) corners.push_back(edges[k].begin);
+    const std::vector<Vector<Dim>> corners = tellers(*walls[w].surface);
     const std::size_t stride = (corners.size() + most_points - 1) / most_points;
     for (std::size_t k = 0; k < corners.size(); k += stride) {
-      std::vector<Vector<2>> path;
+      std::vector<Vector<Dim>> path;
       for (const double time : times) path.push_back((*walls[w].motion)(time).of_position(corners[k]));
       cells.add(SceneItem::path, w + 1, path);
     }
@@ -133,12 +163,9 @@ void add_observers(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cell
   for (std::size_t k = 0; k < config.probes.size(); ++k) {
     const ProbeSettings& probe = config.probes[k];
     auto position = vector_of<Dim>(probe.position);
-    if constexpr (Dim == 2) {
-      const auto wall = std::ranges::find(scene.walls, probe.wall, &Wall::name);
-      if (wall != scene.walls.end())
-        position =
-            poses_of(scene.walls, 0.0)[static_cast<std::size_t>(wall - scene.walls.begin())].of_position(position);
-    }
+    const auto wall = std::ranges::find(scene.walls, probe.wall, &Wall<Dim>::name);
+    if (wall != scene.walls.end())
+      position = poses_of(scene.walls, 0.0)[static_cast<std::size_t>(wall - scene.walls.begin())].of_position(position);
     cells.add(SceneItem::probe, k + 1, {position});
   }
   for (std::size_t k = 0; k < config.gauges.size(); ++k) {
@@ -154,11 +181,9 @@ void add_observers(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cell
 template <int Dim>
 void add_lines(const Case& config, Cells<Dim>& cells) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
-  if constexpr (Dim == 2) {
-    add_walls(scene.walls, cells);
-    add_paths(config, scene.walls, cells);
-    add_inlets(scene, config.particles.spacing, cells);
-  }
+  add_walls(scene.walls, cells);
+  add_paths(config, scene.walls, cells);
+  if constexpr (Dim == 2) add_inlets(scene, config.particles.spacing, cells);
   add_outlets(config.outlets, cells);
   add_observers(config, scene, cells);
   for (std::size_t k = 0; k < config.damping.size(); ++k)

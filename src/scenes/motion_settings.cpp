@@ -30,9 +30,10 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// Takes lines "t, x, y" or "t, x, y, angle"; a first line of words is a header, # begins a comment. Returns what is
-/// wrong with the text; nothing if all is well.
-std::string take_table(std::string_view text, MotionEntry& motion) {
+/// Takes lines "t, x, y" or "t, x, y, angle", in three dimensions with z; a first line of words is a header, # begins a
+/// comment. Returns what is wrong with the text; nothing if all is well.
+std::string take_table(std::string_view text, int dimension, MotionEntry& motion) {
+  const auto least = static_cast<std::size_t>(dimension) + 1;
   std::size_t columns = 0;
   bool first = true;
   for (int line = 1; !text.empty(); ++line) {
@@ -49,11 +50,9 @@ std::string take_table(std::string_view text, MotionEntry& motion) {
     if (std::exchange(first, false) && std::ranges::none_of(cells, [](auto cell) { return number(cell).has_value(); }))
       continue;
     if (columns == 0) columns = cells.size();
-    if (cells.size() != columns || columns < 3 || columns > 4)
-      return fmt::format(
-          "line {} has {} number(s); allowed: t [s], x [m], y [m], angle [deg], or the first three in "
-          "all lines",
-          line, cells.size());
+    if (cells.size() != columns || columns < least || columns > least + 1)
+      return fmt::format("line {} has {} number(s); allowed: t [s], {}, angle [deg], or all but the last in all lines",
+                         line, cells.size(), dimension == 2 ? "x [m], y [m]" : "x [m], y [m], z [m]");
     std::vector<double> values;
     for (const std::string_view cell : cells) {
       const auto value = number(cell);
@@ -61,8 +60,8 @@ std::string take_table(std::string_view text, MotionEntry& motion) {
       values.push_back(*value);
     }
     motion.times.push_back(values[0]);
-    motion.positions.push_back({values[1], values[2], 0.0});
-    if (columns == 4) motion.angles.push_back(values[3]);
+    motion.positions.push_back({values[1], values[2], dimension == 3 ? values[3] : 0.0});
+    if (columns > least) motion.angles.push_back(values.back());
   }
   return motion.times.empty() ? "has no line of numbers" : "";
 }
@@ -103,39 +102,40 @@ void check_table(Keys& keys, const MotionEntry& motion) {
 }  // namespace
 
 void declare_motions(Keys& keys, std::vector<MotionEntry>& motions) {
-  keys.list(
-      "motion", motions, "a prescribed motion that walls name, 2D", {.fixed = true}, [](Keys& inner, MotionEntry& m) {
-        inner.add("name", m.name, "name of the motion", {.fallback = "motion_<number>"});
-        inner.add("type", m.type, "how it goes in time", {.required = true});
-        inner.add("center", m.center, "point that the walls turn about; it moves with them", {.unit = "m"});
-        inner.add("start", m.start, "before, the walls stand where they are then", {.unit = "s"});
-        inner.add("end", m.end, "after, the walls stand where they are then", {.unit = "s", .fallback = "never"});
-        inner.only_where(m.type, {MotionType::constant}, [&] {
-          inner.add("velocity", m.velocity, "of the centre", {.unit = "m/s"});
-          inner.add("spin", m.spin, "counter-clockwise", {.unit = "rad/s"});
-        });
-        inner.only_where(m.type, {MotionType::harmonic}, [&] {
-          inner.add("amplitude", m.amplitude, "of the displacement", {.unit = "m"});
-          inner.add("angle", m.angle, "amplitude of the angle, counter-clockwise", {.unit = "deg"});
-          inner.add("frequency", m.frequency, "both go as sin(2 pi frequency t + phase), t since the start",
-                    {.unit = "Hz", .range = positive, .required = true});
-          inner.add("phase", m.phase, "phase at the start", {.unit = "deg"});
-          inner.add("ramp", m.ramp, "time in which both rise smoothly from 0", {.unit = "s", .range = not_negative});
-        });
-        inner.only_where(m.type, {MotionType::table}, [&] {
-          inner.add("file", m.file,
-                    "a .csv file in the place of the other keys, relative to the case file: t, x, y and, if it is "
-                    "wanted, the angle",
-                    {.fallback = "none"});
-          inner.add("times", m.times, "since the start; a spline joins them, at rest at the first and at the last",
-                    {.unit = "s"});
-          inner.add("positions", m.positions, "displacements at the times", {.unit = "m"});
-          inner.add("angles", m.angles, "angles at the times, counter-clockwise", {.unit = "deg"});
-        });
-      });
+  keys.list("motion", motions, "a prescribed motion that walls name", {.fixed = true}, [](Keys& inner, MotionEntry& m) {
+    inner.add("name", m.name, "name of the motion", {.fallback = "motion_<number>"});
+    inner.add("type", m.type, "how it goes in time", {.required = true});
+    inner.add("center", m.center, "point that the walls turn about; it moves with them", {.unit = "m"});
+    inner.add("axis", m.axis, "3D: direction of the line through center that the walls turn about, of any length");
+    inner.add("start", m.start, "before, the walls stand where they are then", {.unit = "s"});
+    inner.add("end", m.end, "after, the walls stand where they are then", {.unit = "s", .fallback = "never"});
+    inner.only_where(m.type, {MotionType::constant}, [&] {
+      inner.add("velocity", m.velocity, "of the centre", {.unit = "m/s"});
+      inner.add("spin", m.spin, "counter-clockwise", {.unit = "rad/s"});
+    });
+    inner.only_where(m.type, {MotionType::harmonic}, [&] {
+      inner.add("amplitude", m.amplitude, "of the displacement", {.unit = "m"});
+      inner.add("angle", m.angle, "amplitude of the angle, counter-clockwise", {.unit = "deg"});
+      inner.add("frequency", m.frequency, "both go as sin(2 pi frequency t + phase), t since the start",
+                {.unit = "Hz", .range = positive, .required = true});
+      inner.add("phase", m.phase, "phase at the start", {.unit = "deg"});
+      inner.add("ramp", m.ramp, "time in which both rise smoothly from 0", {.unit = "s", .range = not_negative});
+    });
+    inner.only_where(m.type, {MotionType::table}, [&] {
+      inner.add("file", m.file,
+                "a .csv file in the place of the other keys, relative to the case file: t, x, y and, if it is "
+                "wanted, the angle",
+                {.fallback = "none"});
+      inner.add("times", m.times, "since the start; a spline joins them, at rest at the first and at the last",
+                {.unit = "s"});
+      inner.add("positions", m.positions, "displacements at the times", {.unit = "m"});
+      inner.add("angles", m.angles, "angles at the times, counter-clockwise", {.unit = "deg"});
+    });
+  });
 }
 
-void take_motion_tables(Keys& keys, const std::vector<NamedText>& tables, std::vector<MotionEntry>& motions) {
+void take_motion_tables(Keys& keys, int dimension, const std::vector<NamedText>& tables,
+                        std::vector<MotionEntry>& motions) {
   for (MotionEntry& motion : motions) {
     Key& key = keys.of(motion.file);
     if (key.given && key.usable) {
@@ -149,7 +149,7 @@ void take_motion_tables(Keys& keys, const std::vector<NamedText>& tables, std::v
         keys.mistake(key, "the table is given by times, positions or angles, too; allowed: one of the two");
       } else if (found == tables.end()) {
         keys.mistake(key, fmt::format("cannot read {}; allowed: a file of at most 1 MB that a case file names", path));
-      } else if (const std::string wrong = take_table(found->second, motion); !wrong.empty()) {
+      } else if (const std::string wrong = take_table(found->second, dimension, motion); !wrong.empty()) {
         keys.mistake(key, wrong);
         motion.times.clear();
       }
@@ -163,19 +163,21 @@ void derive_motions(const Keys& keys, std::vector<MotionEntry>& motions) {
     if (!keys.given(motions[k].name)) motions[k].name = fmt::format("motion_{}", k + 1);
 }
 
-void check_motions(Keys& keys, const std::vector<MotionEntry>& motions) {
+void check_motions(Keys& keys, int dimension, const std::vector<MotionEntry>& motions) {
   check_names(keys, motions);
   for (const MotionEntry& motion : motions) {
     if (keys.usable(motion.name) && motion.name == no_motion)
       keys.mistake(motion.name, "the word of walls that do not move; allowed: any other name");
     if (keys.usable(motion.start, motion.end) && motion.end <= motion.start)
       keys.mistake(motion.end, fmt::format("ends before it starts; allowed: > {} (s)", number_text(motion.start)));
+    if (dimension == 3 && keys.usable(motion.axis) && !(norm(vector_of<3>(motion.axis)) > 0.0))
+      keys.mistake(motion.axis, "no direction; allowed: any vector but 0");
     if (keys.usable(motion.type, motion.times, motion.positions, motion.angles)) check_table(keys, motion);
   }
 }
 
 bool is_usable(const Keys& keys, const MotionEntry& motion) {
-  if (!keys.usable(motion.type, motion.center, motion.start, motion.end)) return false;
+  if (!keys.usable(motion.type, motion.center, motion.axis, motion.start, motion.end)) return false;
   switch (motion.type) {
     case MotionType::constant:
       return keys.usable(motion.velocity, motion.spin);
@@ -187,23 +189,28 @@ bool is_usable(const Keys& keys, const MotionEntry& motion) {
   return false;
 }
 
-std::optional<Motion<2>> motion_of(const MotionEntry& motion) {
-  const MotionFrame frame{.center = vector_of<2>(motion.center), .start = motion.start, .end = motion.end};
-  if (motion.type == MotionType::constant) return steady_motion(frame, vector_of<2>(motion.velocity), motion.spin);
+template <int Dim>
+std::optional<Motion<Dim>> motion_of(const MotionEntry& motion) {
+  MotionFrame<Dim> frame{.center = vector_of<Dim>(motion.center), .start = motion.start, .end = motion.end};
+  if constexpr (Dim == 3) frame.axis = 1.0 / norm(vector_of<3>(motion.axis)) * vector_of<3>(motion.axis);
+  if (motion.type == MotionType::constant) return steady_motion(frame, vector_of<Dim>(motion.velocity), motion.spin);
   if (motion.type == MotionType::harmonic)
-    return harmonic_motion(frame, {.amplitude = vector_of<2>(motion.amplitude),
-                                   .angle = radians(motion.angle),
-                                   .frequency = motion.frequency,
-                                   .phase = radians(motion.phase),
-                                   .ramp = motion.ramp});
+    return harmonic_motion<Dim>(frame, {.amplitude = vector_of<Dim>(motion.amplitude),
+                                        .angle = radians(motion.angle),
+                                        .frequency = motion.frequency,
+                                        .phase = radians(motion.phase),
+                                        .ramp = motion.ramp});
   if (!has_sound_table(motion)) return {};
-  std::vector<MotionPoint> points;
+  std::vector<MotionPoint<Dim>> points;
   for (std::size_t k = 0; k < motion.times.size(); ++k)
     points.push_back({.time = motion.times[k],
-                      .shift = motion.positions.empty() ? Vector<2>{} : vector_of<2>(motion.positions[k]),
+                      .shift = motion.positions.empty() ? Vector<Dim>{} : vector_of<Dim>(motion.positions[k]),
                       .angle = motion.angles.empty() ? 0.0 : radians(motion.angles[k])});
   return table_motion(frame, points);
 }
+
+template std::optional<Motion<2>> motion_of(const MotionEntry&);
+template std::optional<Motion<3>> motion_of(const MotionEntry&);
 
 std::vector<double> times_of(const MotionEntry& motion, double end, std::size_t most) {
   std::vector<double> times{0.0};

@@ -13,19 +13,20 @@ namespace {
 constexpr double least_gap = 0.25;  // between a region's particles and the block of an inlet [dp]
 
 /// Wall points in their places, sorted so that the nearest one is found quickly.
+template <int Dim>
 class PointsByPlace {
  public:
-  explicit PointsByPlace(std::vector<WallPoint> points) : points_(std::move(points)) {
-    std::ranges::stable_sort(points_, {}, [](const WallPoint& point) { return point.position[0]; });
+  explicit PointsByPlace(std::vector<WallPoint<Dim>> points) : points_(std::move(points)) {
+    std::ranges::stable_sort(points_, {}, [](const WallPoint<Dim>& point) { return point.position[0]; });
   }
 
-  const WallPoint& nearest(const Vector<2>& place) const {
-    const auto x = [](const WallPoint& point) { return point.position[0]; };
+  const WallPoint<Dim>& nearest(const Vector<Dim>& place) const {
+    const auto x = [](const WallPoint<Dim>& point) { return point.position[0]; };
     auto right = std::ranges::lower_bound(points_, place[0], {}, x);
     auto left = right;
-    const WallPoint* best = nullptr;
+    const WallPoint<Dim>* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
-    const auto consider = [&](const WallPoint& point) {
+    const auto consider = [&](const WallPoint<Dim>& point) {
       const double distance = norm(point.position - place);
       if (distance < least) {
         least = distance;
@@ -42,7 +43,7 @@ class PointsByPlace {
   }
 
  private:
-  std::vector<WallPoint> points_;
+  std::vector<WallPoint<Dim>> points_;
 };
 
 template <int Dim>
@@ -53,22 +54,27 @@ bool contains(const Box<Dim>& bounds, const Vector<Dim>& position) {
 }
 
 /// True in the block of an inlet that blows at the start, or nearer to it than `gap` [m].
-bool is_in_block(const std::vector<Inlet<2>>& inlets, const Vector<2>& place, double gap) {
-  return std::ranges::any_of(inlets, [&](const Inlet<2>& inlet) {
+template <int Dim>
+bool is_in_block(const std::vector<Inlet<Dim>>& inlets, const Vector<Dim>& place, double gap) {
+  return std::ranges::any_of(inlets, [&](const Inlet<Dim>& inlet) {
     return inlet.blows && inlet.distance_past(place) < 0.0 && inlet.distance_from_block(place) <= gap;
   });
 }
 
-std::vector<Inlet<2>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
-  std::vector<Inlet<2>> inlets;
-  for (const InletEntry& entry : settings.inlets)
-    inlets.push_back(inlet_of(entry, method.particles.spacing, method.kernel));
+template <int Dim>
+std::vector<Inlet<Dim>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
+  std::vector<Inlet<Dim>> inlets;
+  if constexpr (Dim == 2)
+    for (const InletEntry& entry : settings.inlets)
+      inlets.push_back(inlet_of(entry, method.particles.spacing, method.kernel));
   return inlets;
 }
 
 /// The rows of the inlets that blow at the start, numbered from `id` on.
-void fill_inlets(const std::vector<Inlet<2>>& inlets, std::int64_t id, int rank, int ranks, Particles<2>& particles) {
-  for (const Inlet<2>& inlet : inlets) {
+template <int Dim>
+void fill_inlets(const std::vector<Inlet<Dim>>& inlets, std::int64_t id, int rank, int ranks,
+                 Particles<Dim>& particles) {
+  for (const Inlet<Dim>& inlet : inlets) {
     if (!inlet.blows) continue;
     const auto of_row = static_cast<std::int64_t>(inlet.section.size());
     for_share(inlet.rows * of_row, rank, ranks, [&](std::int64_t k) {
@@ -80,50 +86,58 @@ void fill_inlets(const std::vector<Inlet<2>>& inlets, std::int64_t id, int rank,
   }
 }
 
-std::int64_t count_rows(const std::vector<Inlet<2>>& inlets) {
+template <int Dim>
+std::int64_t count_rows(const std::vector<Inlet<Dim>>& inlets) {
   std::int64_t count = 0;
-  for (const Inlet<2>& inlet : inlets)
+  for (const Inlet<Dim>& inlet : inlets)
     if (inlet.blows) count += inlet.rows * static_cast<std::int64_t>(inlet.section.size());
   return count;
 }
 
-std::vector<WallPoint> points_at(const Scene<2>& scene, double time) {
-  std::vector<WallPoint> points = scene.wall_points;
-  for (WallPoint& point : points) {
-    const Wall& wall = scene.walls[static_cast<std::size_t>(point.wall)];
+template <int Dim>
+std::vector<WallPoint<Dim>> points_at(const Scene<Dim>& scene, double time) {
+  std::vector<WallPoint<Dim>> points = scene.wall_points;
+  for (WallPoint<Dim>& point : points) {
+    const Wall<Dim>& wall = scene.walls[static_cast<std::size_t>(point.wall)];
     if (!wall.motion) continue;
-    const Pose<2> pose = (*wall.motion)(time);
+    const Pose<Dim> pose = (*wall.motion)(time);
     point.position = pose.of_position(point.position);
     point.normal = pose.of_direction(point.normal);
   }
   return points;
 }
 
-/// Puts walls, their points, inlets and the fluid between them into a scene.
-void fill_plane_scene(const MethodSettings& method, const SceneSettings& settings, Scene<2>& scene) {
+}  // namespace
+
+template <int Dim>
+Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& settings) {
   const double spacing = method.particles.spacing;
-  scene.walls = walls_of(settings.scene_walls, settings.motions);
+  Scene<Dim> scene;
+  scene.bounds = {vector_of<Dim>(settings.domain.low), vector_of<Dim>(settings.domain.high)};
+  for (const OutletEntry& entry : settings.outlets)
+    if (auto outlet = outlet_of<Dim>(entry)) scene.outlets.push_back(std::move(*outlet));
+  scene.walls = walls_of<Dim>(settings.scene_walls, settings.motions);
   scene.wall_points = wall_points(scene.walls, spacing);
-  scene.inlets = inlets_of(method, settings);
-  const WetSpace wet(scene.walls, 0.0, spacing);
-  const std::vector<PlacedRegion<2>> regions = placed<2>(settings.regions, spacing);
-  std::vector<RegionBetweenWalls> fluid;
-  for (const PlacedRegion<2>& region : regions) {
+  scene.inlets = inlets_of<Dim>(method, settings);
+  const WetSpace<Dim> wet(scene.walls, 0.0, spacing);
+  const std::vector<PlacedRegion<Dim>> regions = placed<Dim>(settings.regions, spacing);
+  std::vector<RegionBetweenWalls<Dim>> fluid;
+  for (const PlacedRegion<Dim>& region : regions) {
     fluid.emplace_back(region, wet, spacing);
     scene.settles |= fluid.back().is_cut();
   }
-  const std::vector<WallPoint> points = points_at(scene, 0.0);
+  const std::vector<WallPoint<Dim>> points = points_at(scene, 0.0);
   const auto of_walls = static_cast<std::int64_t>(points.size());
   const std::int64_t of_fluid = count_points(regions);
   scene.next_id = of_walls + of_fluid + count_rows(scene.inlets);
-  scene.fill = [=, bounds = scene.bounds, inlets = scene.inlets](int rank, int ranks, Particles<2>& particles) {
+  scene.fill = [=, bounds = scene.bounds, inlets = scene.inlets](int rank, int ranks, Particles<Dim>& particles) {
     for_share(of_walls, rank, ranks, [&](std::int64_t k) {
       particles.append({points[static_cast<std::size_t>(k)].position, {}, 0.0, 0.0, k, ParticleType::wall});
     });
     std::int64_t first_id = of_walls;
     for (std::size_t r = 0; r < fluid.size(); ++r) {
       for_share(regions[r].points(), rank, ranks, [&](std::int64_t k) {
-        Vector<2> position;
+        Vector<Dim> position;
         if (fluid[r].point(k, position) && contains(bounds, position) &&
             !is_in_block(inlets, position, least_gap * spacing))
           particles.append({position, regions[r].velocity(position), 0.0, 0.0, first_id + k, ParticleType::fluid});
@@ -132,30 +146,10 @@ void fill_plane_scene(const MethodSettings& method, const SceneSettings& setting
     }
     fill_inlets(inlets, of_walls + of_fluid, rank, ranks, particles);
   };
-  if (points.empty()) return;
-  const auto by_place = std::make_shared<const PointsByPlace>(points);
-  scene.wall_normal = [by_place](const Vector<2>& place) { return by_place->nearest(place).normal; };
-  scene.on_floor = [](const Vector<2>&) { return false; };
-}
-
-}  // namespace
-
-template <int Dim>
-Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& settings) {
-  Scene<Dim> scene;
-  scene.bounds = {vector_of<Dim>(settings.domain.low), vector_of<Dim>(settings.domain.high)};
-  for (const OutletEntry& entry : settings.outlets)
-    if (auto outlet = outlet_of<Dim>(entry)) scene.outlets.push_back(std::move(*outlet));
-  if constexpr (Dim == 2) {
-    fill_plane_scene(method, settings, scene);
-  } else {
-    const std::vector<PlacedRegion<Dim>> fluid = placed<Dim>(settings.regions, method.particles.spacing);
-    scene.next_id = count_points(fluid);
-    scene.fill = [fluid, bounds = scene.bounds](int rank, int ranks, Particles<Dim>& particles) {
-      const auto is_inside = [&](const Vector<Dim>& position) { return contains(bounds, position); };
-      fill_regions<Dim>(fluid, 0, rank, ranks, is_inside, particles);
-    };
-  }
+  if (points.empty()) return scene;
+  const auto by_place = std::make_shared<const PointsByPlace<Dim>>(points);
+  scene.wall_normal = [by_place](const Vector<Dim>& place) { return by_place->nearest(place).normal; };
+  scene.on_floor = [](const Vector<Dim>&) { return false; };
   return scene;
 }
 
@@ -165,18 +159,16 @@ RegionVolume volume_between_walls(const MethodSettings& method, const SceneSetti
   const double spacing = method.particles.spacing;
   const double of_particle = std::pow(spacing, Dim);
   const PlacedRegion<Dim> placed_region(region, spacing);
-  if constexpr (Dim == 2) {
-    if (!settings.scene_walls.empty() || !settings.inlets.empty()) {
-      const WetSpace wet(walls_of(settings.scene_walls, settings.motions), 0.0, spacing);
-      const std::vector<Inlet<2>> inlets = inlets_of(method, settings);
-      const RegionBetweenWalls between(placed_region, wet, spacing);
-      std::int64_t taken = 0;  // by inlets
-      Vector<2> position;
-      for (std::int64_t k = 0; k < placed_region.points(); ++k)
-        taken += between.point(k, position) && is_in_block(inlets, position, least_gap * spacing) ? 1 : 0;
-      const double in_blocks = static_cast<double>(taken) * of_particle;
-      return {between.volume() - in_blocks, static_cast<double>(between.count()) * of_particle - in_blocks};
-    }
+  if (!settings.scene_walls.empty() || !settings.inlets.empty()) {
+    const WetSpace<Dim> wet(walls_of<Dim>(settings.scene_walls, settings.motions), 0.0, spacing);
+    const std::vector<Inlet<Dim>> inlets = inlets_of<Dim>(method, settings);
+    const RegionBetweenWalls<Dim> between(placed_region, wet, spacing);
+    std::int64_t taken = 0;  // by inlets
+    Vector<Dim> position;
+    for (std::int64_t k = 0; k < placed_region.points(); ++k)
+      taken += between.point(k, position) && is_in_block(inlets, position, least_gap * spacing) ? 1 : 0;
+    const double in_blocks = static_cast<double>(taken) * of_particle;
+    return {between.volume() - in_blocks, static_cast<double>(between.count()) * of_particle - in_blocks};
   }
   return {placed_region.volume(), static_cast<double>(placed_region.count()) * of_particle};
 }

@@ -46,20 +46,26 @@ void add_fluid(const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
 }
 
 /// A wall that exists, and where it comes from.
+template <int Dim>
 struct SoundWall {
   const WallEntry* entry;
-  Wall wall;
+  Wall<Dim> wall;
 };
 
-/// The walls that exist, in two dimensions.
-std::vector<SoundWall> sound_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  std::vector<SoundWall> walls;
-  if (!keys.usable(in.dimension, in.spacing) || in.dimension != 2) return walls;
-  constexpr double longest = std::numeric_limits<std::int32_t>::max();  // [dp], as in check_walls
+/// Length in spacings, or area in their squares.
+double size_of(const Wall<2>& wall, double spacing) { return wall.surface->length() / spacing; }
+double size_of(const Wall<3>& wall, double spacing) { return wall.surface->area() / (spacing * spacing); }
+
+/// The walls that exist.
+template <int Dim>
+std::vector<SoundWall<Dim>> sound_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  std::vector<SoundWall<Dim>> walls;
+  if (!keys.usable(in.dimension, in.spacing) || in.dimension != Dim) return walls;
+  constexpr double most = std::numeric_limits<std::int32_t>::max();  // particles, as in check_walls
   for (const WallEntry& entry : s.scene_walls) {
     if (!is_usable(keys, entry, s.motions)) continue;
-    auto wall = wall_of(entry, s.motions);
-    if (wall && wall->outline.length() <= longest * in.spacing) walls.push_back({&entry, std::move(*wall)});
+    auto wall = wall_of<Dim>(entry, s.motions);
+    if (wall && size_of(*wall, in.spacing) <= most) walls.push_back({&entry, std::move(*wall)});
   }
   return walls;
 }
@@ -74,16 +80,31 @@ std::vector<double> times_of(const Keys& keys, const WallEntry& wall, const Scen
 constexpr std::size_t many_times = 4000;  // for speeds
 constexpr std::size_t some_times = 400;   // for places
 
-/// What a wall moves over.
-Bounds bounds_of(const Keys& keys, const SoundWall& wall, const SceneSettings& s, const SceneInputs& in) {
+/// The bounds of a wall in its place at a time; in three dimensions those of the corners of its bounds at rest.
+Box<2> bounds_at(const Wall<2>& wall, double time) { return outline_at(wall, time).bounds(); }
+Box<3> bounds_at(const Wall<3>& wall, double time) {
+  const Box<3> at_rest = wall.surface->bounds();
+  if (!wall.motion) return at_rest;
+  const Pose<3> pose = (*wall.motion)(time);
   Bounds bounds;
-  for (const double time : times_of(keys, *wall.entry, s, in, some_times))
-    bounds.add(outline_at(wall.wall, time).bounds());
+  for (int k = 0; k < 8; ++k) {
+    const Vector<3> corner = pose.of_position(at_rest.corner(k));
+    bounds.add(Box<3>{corner, corner});
+  }
+  return bounds.box();
+}
+
+/// What a wall moves over.
+template <int Dim>
+Bounds bounds_of(const Keys& keys, const SoundWall<Dim>& wall, const SceneSettings& s, const SceneInputs& in) {
+  Bounds bounds;
+  for (const double time : times_of(keys, *wall.entry, s, in, some_times)) bounds.add(bounds_at(wall.wall, time));
   return bounds;
 }
 
 void add_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
-  for (const SoundWall& wall : sound_walls(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
+  for (const SoundWall<2>& wall : sound_walls<2>(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
+  for (const SoundWall<3>& wall : sound_walls<3>(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
 }
 
 /// An inlet's block with the row that may still be behind it, and its entry.
@@ -117,19 +138,19 @@ std::optional<Vector<2>> common_place(const Outline& area, const Outline& outlin
 }
 
 /// What is wrong with an inlet between walls that stand as they do at a time; nothing if all is well.
-std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall>& walls, double time,
+std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall<2>>& walls, double time,
                           const SceneInputs& in) {
   constexpr double beside = 0.25;  // so near to a side, a wall is along it [dp]
   const double margin = beside * in.spacing, reach = in.kernel.largest() * in.spacing, width = inlet.entry->width;
   const Outline block = way_of(inlet.inlet, width, -inlet.inlet.rows * inlet.inlet.spacing, 0.0, margin);
   const Outline before = way_of(inlet.inlet, width, 0.0, reach, margin);
-  std::vector<Wall> all;
-  for (const SoundWall& wall : walls) {
+  std::vector<Wall<2>> all;
+  for (const SoundWall<2>& wall : walls) {
     const Outline outline = outline_at(wall.wall, time);
     if (const auto place = common_place(block, outline))
       return fmt::format("the inlet is cut by the wall \"{}\", at ({:.4g}, {:.4g}) m", wall.wall.name, (*place)[0],
                          (*place)[1]);
-    if (outline.closed() && !wall.wall.wet_left && outline.contains(vector_of<2>(inlet.entry->center)))
+    if (outline.closed() && !wall.wall.wet_back && outline.contains(vector_of<2>(inlet.entry->center)))
       return fmt::format("the inlet is inside the wall \"{}\"", wall.wall.name);
     if (const auto place = common_place(before, outline))
       return fmt::format(
@@ -138,18 +159,18 @@ std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall>&
           wall.wall.name, (*place)[0], (*place)[1], reach);
     all.push_back(wall.wall);
   }
-  if (!WetSpace(all, time, in.spacing).contains(vector_of<2>(inlet.entry->center)))
+  if (!WetSpace<2>(all, time, in.spacing).contains(vector_of<2>(inlet.entry->center)))
     return "the inlet is on the dry side of the walls";
   return "";
 }
 
 /// Notes inlets that walls are in the way of, at the start or later.
 void check_inlets_and_walls(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  const std::vector<SoundWall> walls = sound_walls(keys, s, in);
+  const std::vector<SoundWall<2>> walls = sound_walls<2>(keys, s, in);
   for (const SoundInlet& inlet : sound_inlets(keys, s, in)) {
     const double start = std::max(inlet.entry->start, 0.0);
     std::vector<double> times{start};
-    for (const SoundWall& wall : walls)
+    for (const SoundWall<2>& wall : walls)
       for (const double time : times_of(keys, *wall.entry, s, in, some_times))
         if (time > start && time <= inlet.entry->stop) times.push_back(time);
     for (const double time : times) {
@@ -187,16 +208,28 @@ struct FastestMoment {
   double speed = 0.0, time = 0.0;
 };
 
-FastestMoment fastest_moment(const Wall& wall, const std::vector<double>& times) {
-  FastestMoment fastest;
-  if (!wall.motion) return fastest;
+/// Points that tell how fast a wall is: of a rigid body, a corner of a box around it is faster than what is inside.
+std::vector<Vector<2>> corners_of(const Outline& outline) {
   std::vector<Vector<2>> points;
-  for (const OutlineEdge& edge : wall.outline.edges())
+  for (const OutlineEdge& edge : outline.edges())
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
       if (!edge.straight() || share == 0.0 || share == 1.0) points.push_back(edge.at(share));
+  return points;
+}
+std::vector<Vector<3>> corners_of(const Mesh& mesh) {
+  std::vector<Vector<3>> points;
+  for (int k = 0; k < 8; ++k) points.push_back(mesh.bounds().corner(k));
+  return points;
+}
+
+template <int Dim>
+FastestMoment fastest_moment(const Wall<Dim>& wall, const std::vector<double>& times) {
+  FastestMoment fastest;
+  if (!wall.motion) return fastest;
+  const std::vector<Vector<Dim>> points = corners_of(*wall.surface);
   for (const double time : times) {
-    const Pose<2> pose = (*wall.motion)(time);
-    for (const Vector<2>& point : points) {
+    const Pose<Dim> pose = (*wall.motion)(time);
+    for (const Vector<Dim>& point : points) {
       const double speed = norm(pose.velocity_at(pose.of_position(point)));
       if (speed > fastest.speed) fastest = {speed, time};
     }
@@ -205,8 +238,9 @@ FastestMoment fastest_moment(const Wall& wall, const std::vector<double>& times)
 }
 
 /// Notes walls that are faster than particles may be, and walls that move through others.
+template <int Dim>
 void check_motion(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  const std::vector<SoundWall> walls = sound_walls(keys, s, in);
+  const std::vector<SoundWall<Dim>> walls = sound_walls<Dim>(keys, s, in);
   if (!keys.usable(in.time.end)) return;
   for (std::size_t b = 0; b < walls.size(); ++b) {
     const auto& [entry, wall] = walls[b];
@@ -219,19 +253,22 @@ void check_motion(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
             fmt::format("moves the wall at {:.4g} m/s at t = {:.4g} s; allowed: up to time.max_speed, {} (m/s)", speed,
                         time, number_text(in.time.max_speed)));
     }
-    for (std::size_t a = 0; a < b; ++a) {
-      if (walls[a].entry->motion == entry->motion) continue;
-      std::vector<double> of_both = times_of(keys, *walls[a].entry, s, in, some_times);
-      of_both.insert(of_both.end(), times.begin(), times.end());
-      std::ranges::sort(of_both);
-      const auto crossing = first_crossing(wall, walls[a].wall, of_both, in.spacing);
-      if (!crossing) continue;
-      const auto& [mover, other] =
-          entry->motion != no_motion ? std::pair(entry, walls[a].entry) : std::pair(walls[a].entry, entry);
-      keys.mistake(mover->motion,
-                   fmt::format("the wall \"{}\" moves through the wall \"{}\", at t = {:.4g} s at ({:.4g}, {:.4g}) m; "
-                               "it may touch it and slide along",
-                               mover->name, other->name, crossing->time, crossing->place[0], crossing->place[1]));
+    if constexpr (Dim == 2) {
+      for (std::size_t a = 0; a < b; ++a) {
+        if (walls[a].entry->motion == entry->motion) continue;
+        std::vector<double> of_both = times_of(keys, *walls[a].entry, s, in, some_times);
+        of_both.insert(of_both.end(), times.begin(), times.end());
+        std::ranges::sort(of_both);
+        const auto crossing = first_crossing(wall, walls[a].wall, of_both, in.spacing);
+        if (!crossing) continue;
+        const auto& [mover, other] =
+            entry->motion != no_motion ? std::pair(entry, walls[a].entry) : std::pair(walls[a].entry, entry);
+        keys.mistake(
+            mover->motion,
+            fmt::format("the wall \"{}\" moves through the wall \"{}\", at t = {:.4g} s at ({:.4g}, {:.4g}) m; "
+                        "it may touch it and slide along",
+                        mover->name, other->name, crossing->time, crossing->place[0], crossing->place[1]));
+      }
     }
   }
 }
@@ -272,17 +309,18 @@ void check_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
 }
 
 /// Notes walls that reach out of the bounds: their particles would be lost.
+template <int Dim>
 void check_walls_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  for (const SoundWall& wall : sound_walls(keys, s, in)) {
+  for (const SoundWall<Dim>& wall : sound_walls<Dim>(keys, s, in)) {
     const Box<3> box = bounds_of(keys, wall, s, in).box();
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < Dim; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       const double low = s.domain.low[axis] + in.spacing, high = s.domain.high[axis] - in.spacing;
       if (box.low[k] >= low && box.high[k] <= high) continue;
       keys.mistake(wall.entry->shape,
                    fmt::format("the wall reaches from {0} = {1:.6g} to {2:.6g} m, nearer to the bounds than "
                                "a spacing or out of them; allowed: [{3:.6g}, {4:.6g}] (m), and domain",
-                               k == 0 ? "x" : "y", box.low[k], box.high[k], low, high));
+                               "xyz"[k], box.low[k], box.high[k], low, high));
       break;
     }
   }
@@ -301,8 +339,12 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
     fastest = std::max(
         fastest, std::hypot(region.velocity[0], region.velocity[1], region.velocity[2]) + rate * fluid.longest_side());
   }
-  for (const SoundWall& wall : sound_walls(keys, s, in))
-    fastest = std::max(fastest, fastest_moment(wall.wall, times_of(keys, *wall.entry, s, in, many_times)).speed);
+  const auto add_fastest = [&](const auto& walls) {
+    for (const auto& [entry, wall] : walls)
+      fastest = std::max(fastest, fastest_moment(wall, times_of(keys, *entry, s, in, many_times)).speed);
+  };
+  add_fastest(sound_walls<2>(keys, s, in));
+  add_fastest(sound_walls<3>(keys, s, in));
   for (const InletEntry& inlet : s.inlets)
     if (keys.usable(inlet.speed, inlet.speeds)) fastest = std::max(fastest, largest_speed(inlet));
   Bounds all = fluid;
@@ -315,15 +357,13 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
 
 void derive_open_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   derive_motions(keys, s.motions);
-  derive_walls(keys, s.scene_walls);
+  if (keys.usable(in.dimension)) derive_walls(keys, in.dimension, s.scene_walls);
   derive_openings(keys, in.dimension, s.inlets, s.outlets);
   derive_domain(keys, s, in);
 }
 
 void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   const bool has_walls = keys.usable(s.scene_walls) && !s.scene_walls.empty();
-  if (has_walls && keys.usable(in.dimension) && in.dimension != 2)
-    keys.mistake(s.scene_walls, "walls of any shape exist in two dimensions; allowed: dimension = 2");
   if (has_walls && keys.usable(in.walls.model) && in.walls.model != WallModel::mirror)
     keys.mistake(s.scene_walls, "walls of any shape are no particles; allowed: walls.model = \"mirror\"");
   const bool has_inlets = keys.usable(s.inlets) && !s.inlets.empty();
@@ -331,11 +371,10 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     keys.mistake(s.inlets, "inlets of a scene exist in two dimensions; allowed: dimension = 2");
   if (!keys.usable(in.dimension, in.spacing)) return;
   if (keys.usable(s.outlets)) check_outlets(keys, in.dimension, s.outlets);
-  const bool plane_walls = has_walls && in.dimension == 2;
-  if (keys.usable(s.motions)) check_motions(keys, s.motions);
-  if (plane_walls) {
-    check_walls(keys, in.spacing, s.scene_walls, s.motions);
-    check_motion(keys, s, in);
+  if (keys.usable(s.motions)) check_motions(keys, in.dimension, s.motions);
+  if (has_walls) {
+    check_walls(keys, in.dimension, in.spacing, s.scene_walls, s.motions);
+    in.dimension == 2 ? check_motion<2>(keys, s, in) : check_motion<3>(keys, s, in);
   }
   if (has_inlets && in.dimension == 2) {
     check_inlets(keys, in.spacing, in.kernel, s.inlets);
@@ -348,7 +387,7 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     return;
   }
   check_domain(keys, s, in);
-  if (plane_walls) check_walls_in_domain(keys, s, in);
+  if (has_walls) in.dimension == 2 ? check_walls_in_domain<2>(keys, s, in) : check_walls_in_domain<3>(keys, s, in);
 }
 
 void check_count(Keys& keys, const SceneInputs& in, double volume) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
 namespace impinge {
 namespace {
@@ -21,18 +23,52 @@ std::uint64_t scattered(std::int64_t number) {
   return x ^ (x >> 31U);
 }
 
-/// Of a cell's parts, the share whose middles are inside; `is_inside(x, y)`: from the cell's middle [cell edges].
-template <class IsInside>
+/// Of a cell's parts, the share whose middles are inside; `is_inside(offset)`: from the cell's middle [cell edges].
+template <int Dim, class IsInside>
 double share_inside(IsInside&& is_inside) {
+  const BoxLattice<Dim> lattice = [] {
+    BoxLattice<Dim> result{.spacing = 1.0 / parts};
+    for (int k = 0; k < Dim; ++k) {
+      result.low[k] = -0.5;
+      result.extent[static_cast<std::size_t>(k)] = parts;
+    }
+    return result;
+  }();
   int within = 0;
-  for (int a = 0; a < parts; ++a)
-    for (int b = 0; b < parts; ++b) within += is_inside((a + 0.5) / parts - 0.5, (b + 0.5) / parts - 0.5) ? 1 : 0;
-  return static_cast<double>(within) / (parts * parts);
+  for (std::int64_t k = 0; k < lattice.count(); ++k) within += is_inside(lattice.point(k)) ? 1 : 0;
+  return static_cast<double>(within) / static_cast<double>(lattice.count());
+}
+
+/// The share of a cell in which several depths are positive. `depths`: at a place; `place(offset)`: of the cell, from
+/// its middle [cell edges]. In three dimensions the depths are linear in the cell.
+template <int Dim, class Place, class Depths>
+double share_of_cell(Place&& place, Depths&& depths) {
+  if constexpr (Dim == 2) {
+    return share_inside<2>([&](const Vector<2>& offset) {
+      const auto all = depths(place(offset));
+      return std::ranges::all_of(all, [](double depth) { return depth > 0.0; });
+    });
+  } else {
+    const auto middle = depths(place({}));
+    std::array<Vector<3>, std::tuple_size_v<std::remove_const_t<decltype(middle)>>> slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector<3> half;
+      half[axis] = 0.5;
+      const auto above = depths(place(half)), below = depths(place(-1.0 * half));
+      for (std::size_t k = 0; k < slope.size(); ++k) slope[k][axis] = above[k] - below[k];
+    }
+    return share_inside<3>([&](const Vector<3>& offset) {
+      for (std::size_t k = 0; k < slope.size(); ++k)
+        if (!(middle[k] + dot(slope[k], offset) > 0.0)) return false;
+      return true;
+    });
+  }
 }
 
 }  // namespace
 
-RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetSpace& wet, double spacing)
+template <int Dim>
+RegionBetweenWalls<Dim>::RegionBetweenWalls(const PlacedRegion<Dim>& region, const WetSpace<Dim>& wet, double spacing)
     : region_(region), wet_(wet), spacing_(spacing) {
   struct Candidate {
     double depth;  ///< in the region and between the walls [dp]
@@ -41,18 +77,16 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
   };
   std::vector<Candidate> candidates;
   // Of a cell, how much lies in the region and between the walls.
+  const auto depths = [&](const Vector<Dim>& place) { return std::array{wet.depth(place), -region.distance(place)}; };
   const auto share_of = [&](std::int64_t k) {
-    return share_inside([&](double x, double y) {
-      const Vector<2> part = region.place(k, spacing * Vector<2>{{x, y}});
-      return region.contains(part) && wet.depth(part) > 0.0;
-    });
+    return share_of_cell<Dim>([&](const Vector<Dim>& offset) { return region.place(k, spacing * offset); }, depths);
   };
   double cells = 0.0;  // beside walls
   std::int64_t far = 0;
   for (std::int64_t k = 0; k < region.points(); ++k) {
-    const Vector<2> position = region.place(k);
+    const Vector<Dim> position = region.place(k);
     const double wall_depth = wet.depth(position) / spacing;
-    Vector<2> inside;
+    Vector<Dim> inside;
     if (wall_depth >= 1.0) {
       far += region.point(k, inside) ? 1 : 0;
       continue;
@@ -73,10 +107,13 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
     if (depth < least_depth) {
       // On a plate, to one side or the other.
       const double side = candidate.order % 2 == 0 ? 1.0 : -1.0;
-      const Vector<2> near = candidate.point.position + 2.0 * side * step * spacing * Vector<2>{{0.8, 0.6}};
-      Vector<2> slope;
-      for (int k = 0; k < 2; ++k) {
-        Vector<2> way;
+      Vector<Dim> aside;
+      aside[0] = 0.8;
+      aside[1] = 0.6;
+      const Vector<Dim> near = candidate.point.position + 2.0 * side * step * spacing * aside;
+      Vector<Dim> slope;
+      for (int k = 0; k < Dim; ++k) {
+        Vector<Dim> way;
         way[k] = step * spacing;
         slope[k] = wet.depth(near + way) - wet.depth(near - way);
       }
@@ -90,35 +127,41 @@ RegionBetweenWalls::RegionBetweenWalls(const PlacedRegion<2>& region, const WetS
 }
 
 // By cells of the region's bounds, those that an edge may cut by their parts.
-double RegionBetweenWalls::volume() const {
-  const Box<2> box = region_.bounds();
-  std::array<int, 2> extent{};
-  Vector<2> cell;
-  for (int k = 0; k < 2; ++k) {
+template <int Dim>
+double RegionBetweenWalls<Dim>::volume() const {
+  const Box<Dim> box = region_.bounds();
+  BoxLattice<Dim> cells{.spacing = 1.0};
+  Vector<Dim> cell;
+  double size = 1.0;
+  for (int k = 0; k < Dim; ++k) {
     const double length = box.high[k] - box.low[k];
-    extent[static_cast<std::size_t>(k)] = std::max(1, static_cast<int>(std::ceil(length / spacing_)));
-    cell[k] = length / extent[static_cast<std::size_t>(k)];
+    const auto count = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(length / spacing_)));
+    cells.extent[static_cast<std::size_t>(k)] = count;
+    cell[k] = length / static_cast<double>(count);
+    size *= cell[k];
   }
-  const auto depth = [&](double x, double y) {
-    const Vector<2> point{{box.low[0] + x * cell[0], box.low[1] + y * cell[1]}};
-    return std::min(wet_.depth(point), -region_.distance(point));
+  const auto at = [&](const Vector<Dim>& number) {
+    Vector<Dim> point = box.low;
+    for (int k = 0; k < Dim; ++k) point[k] += number[k] * cell[k];
+    return point;
   };
-  double cells = 0.0;
-  for (int x = 0; x < extent[0]; ++x) {
-    for (int y = 0; y < extent[1]; ++y) {
-      const double middle_x = x + 0.5, middle_y = y + 0.5;
-      const double at_middle = depth(middle_x, middle_y);
-      if (std::abs(at_middle) > 0.5 * norm(cell)) {
-        cells += at_middle > 0.0 ? 1.0 : 0.0;
-      } else {
-        cells += share_inside([&](double a, double b) { return depth(middle_x + a, middle_y + b) > 0.0; });
-      }
+  const auto depths = [&](const Vector<Dim>& point) { return std::array{wet_.depth(point), -region_.distance(point)}; };
+  double sum = 0.0;
+  for (std::int64_t k = 0; k < cells.count(); ++k) {
+    const Vector<Dim> middle = cells.point(k);
+    const auto at_middle = depths(at(middle));
+    const double depth = std::min(at_middle[0], at_middle[1]);
+    if (std::abs(depth) > 0.5 * norm(cell)) {
+      sum += depth > 0.0 ? 1.0 : 0.0;
+    } else {
+      sum += share_of_cell<Dim>([&](const Vector<Dim>& offset) { return at(middle + offset); }, depths);
     }
   }
-  return cells * cell[0] * cell[1];
+  return sum * size;
 }
 
-bool RegionBetweenWalls::point(std::int64_t k, Vector<2>& position) const {
+template <int Dim>
+bool RegionBetweenWalls<Dim>::point(std::int64_t k, Vector<Dim>& position) const {
   const auto found = std::ranges::lower_bound(near_, k, {}, &Point::number);
   if (found != near_.end() && found->number == k) {
     position = found->position;
@@ -126,5 +169,8 @@ bool RegionBetweenWalls::point(std::int64_t k, Vector<2>& position) const {
   }
   return region_.point(k, position) && !is_near(position);
 }
+
+template class RegionBetweenWalls<2>;
+template class RegionBetweenWalls<3>;
 
 }  // namespace impinge

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -46,16 +47,32 @@ std::string faces_text(const WallEntry& entry, const Outline& outline) {
                      pieces > faces ? fmt::format(" of {} pieces", pieces) : "");
 }
 
-std::string wall_line(const WallEntry& entry, const Wall& wall) {
-  std::string text = fmt::format("wall        {}: {:.6g} m long, ", wall.name, wall.outline.length());
-  if (wall.outline.closed()) text += fmt::format("{:.6g} m^2 enclosed, ", wall.outline.volume());
-  text += fmt::format("{}, wet {}", faces_text(entry, wall.outline), word_of(entry.wet));
-  if (entry.motion != no_motion) text += fmt::format(", moves by {}", entry.motion);
-  return text;
+std::string moved_by(const WallEntry& entry) {
+  return entry.motion == no_motion ? "" : fmt::format(", moves by {}", entry.motion);
+}
+
+std::string wall_line(const WallEntry& entry, const Wall<2>& wall) {
+  std::string text = fmt::format("wall        {}: {:.6g} m long, ", wall.name, wall.surface->length());
+  if (wall.surface->closed()) text += fmt::format("{:.6g} m^2 enclosed, ", wall.surface->volume());
+  text += fmt::format("{}, wet {}", faces_text(entry, *wall.surface), word_of(entry.wet));
+  return text + moved_by(entry);
+}
+
+std::string wall_line(const WallEntry& entry, const Wall<3>& wall) {
+  const Mesh& mesh = *wall.surface;
+  std::size_t facets = 0, flat = 0;
+  for (const auto& patch : mesh.patches()) {
+    facets += patch->facets().size();
+    flat += patch->is_flat() ? 1 : 0;
+  }
+  std::string text = fmt::format("wall        {}: {:.6g} m^2, ", wall.name, mesh.area());
+  if (mesh.closed()) text += fmt::format("{:.6g} m^3 enclosed, ", mesh.volume());
+  return text + fmt::format("{} facets, {} flat and {} curved faces, wet {}{}", facets, flat,
+                            mesh.patches().size() - flat, word_of(entry.wet), moved_by(entry));
 }
 
 /// The narrowest gap of a wall; nothing if it has none.
-std::string gap_text(std::size_t wall, const std::vector<WallGap>& gaps, const std::vector<Wall>& walls) {
+std::string gap_text(std::size_t wall, const std::vector<WallGap>& gaps, const std::vector<Wall<2>>& walls) {
   const WallGap* narrowest = nullptr;
   for (const WallGap& gap : gaps)
     if ((gap.one == wall || gap.other == wall) && (!narrowest || gap.width < narrowest->width)) narrowest = &gap;
@@ -65,7 +82,7 @@ std::string gap_text(std::size_t wall, const std::vector<WallGap>& gaps, const s
                      other == wall ? "itself" : walls[other].name, place_text(*narrowest));
 }
 
-std::string gap_warning(const WallGap& gap, const std::vector<Wall>& walls) {
+std::string gap_warning(const WallGap& gap, const std::vector<Wall<2>>& walls) {
   const std::string between = gap.one == gap.other ? fmt::format("within the wall \"{}\"", walls[gap.one].name)
                                                    : fmt::format("between the walls \"{}\" and \"{}\"",
                                                                  walls[gap.one].name, walls[gap.other].name);
@@ -90,24 +107,38 @@ class Range {
   double low_ = 0.0, high_ = 0.0;
 };
 
+template <int Dim>
 std::string motion_line(const MotionEntry& entry, const std::vector<WallEntry>& walls, double end) {
   constexpr std::size_t most = 4000;
   constexpr double degrees = 180.0 / std::numbers::pi;
-  const auto motion = motion_of(entry);
-  const Vector<2> center = vector_of<2>(entry.center);
-  Range x, y, turn;
+  const auto motion = motion_of<Dim>(entry);
+  const Vector<Dim> center = vector_of<Dim>(entry.center);
+  std::array<Range, Dim> way;
+  Range turn;
   double angle = 0.0;
+  // A direction across the axis, and what it turns to after a quarter.
+  Vector<Dim> across, quarter;
+  if constexpr (Dim == 2) {
+    across = {{1.0, 0.0}};
+    quarter = turned_left(across);
+  } else {
+    const Vector<3> axis = 1.0 / norm(vector_of<3>(entry.axis)) * vector_of<3>(entry.axis);
+    across = std::abs(axis[0]) < 0.9 ? Vector<3>{{1.0, 0.0, 0.0}} : Vector<3>{{0.0, 1.0, 0.0}};
+    quarter = cross(axis, across);
+    across = cross(quarter, axis);
+  }
   for (const double time : times_of(entry, end, most)) {
-    const Pose<2> pose = (*motion)(time);
-    const Vector<2> shift = pose.of_position(center) - center, along = pose.of_direction({{1.0, 0.0}});
-    angle += std::remainder(std::atan2(along[1], along[0]) - angle, 2.0 * std::numbers::pi);  // over full turns, too
-    x.add(shift[0]);
-    y.add(shift[1]);
+    const Pose<Dim> pose = (*motion)(time);
+    const Vector<Dim> shift = pose.of_position(center) - center, along = pose.of_direction(across);
+    const double now = std::atan2(dot(along, quarter), dot(along, across));
+    angle += std::remainder(now - angle, 2.0 * std::numbers::pi);  // over full turns, too
+    for (int k = 0; k < Dim; ++k) way[static_cast<std::size_t>(k)].add(shift[k]);
     turn.add(degrees * angle);
   }
-  std::string text =
-      fmt::format("motion      {}: {}, t = {:.6g} to {:.6g} s{}{}{}", entry.name, word_of(entry.type), entry.start,
-                  std::min(entry.end, end), x.text("x", "m"), y.text("y", "m"), turn.text("angle", "deg"));
+  std::string text = fmt::format("motion      {}: {}, t = {:.6g} to {:.6g} s", entry.name, word_of(entry.type),
+                                 entry.start, std::min(entry.end, end));
+  for (std::size_t k = 0; k < Dim; ++k) text += way[k].text(std::array{"x", "y", "z"}[k], "m");
+  text += turn.text("angle", "deg");
   std::vector<std::string> moved;
   for (const WallEntry& wall : walls)
     if (wall.motion == entry.name) moved.push_back(wall.name);
@@ -140,17 +171,27 @@ std::string outlet_line(const OutletEntry& entry) {
 SceneReport report_scene(const MethodSettings& method, const SceneSettings& settings) {
   SceneReport report;
   const double end = method.time.end;
-  const std::vector<Wall> walls = walls_of(settings.scene_walls, settings.motions);
-  const std::vector<WallGap> gaps = wall_gaps(walls, times_of_all(settings.motions, end), method.particles.spacing);
-  for (std::size_t k = 0; k < walls.size(); ++k)
-    report.lines.push_back(wall_line(settings.scene_walls[k], walls[k]) + gap_text(k, gaps, walls));
+  if (method.dimension == 2) {
+    const std::vector<Wall<2>> walls = walls_of<2>(settings.scene_walls, settings.motions);
+    const std::vector<WallGap> gaps = wall_gaps(walls, times_of_all(settings.motions, end), method.particles.spacing);
+    for (std::size_t k = 0; k < walls.size(); ++k)
+      report.lines.push_back(wall_line(settings.scene_walls[k], walls[k]) + gap_text(k, gaps, walls));
+    for (const WallGap& gap : gaps)
+      if (gap.width < least_gap) report.warnings.push_back(gap_warning(gap, walls));
+  } else {
+    const std::vector<Wall<3>> walls = walls_of<3>(settings.scene_walls, settings.motions);
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      report.lines.push_back(wall_line(settings.scene_walls[k], walls[k]));
+      for (const std::string& what : settings.scene_walls[k].mesh_warnings)
+        report.warnings.push_back(fmt::format("the wall \"{}\": {}", walls[k].name, what));
+    }
+  }
   for (const MotionEntry& entry : settings.motions)
-    report.lines.push_back(motion_line(entry, settings.scene_walls, end));
+    report.lines.push_back(method.dimension == 2 ? motion_line<2>(entry, settings.scene_walls, end)
+                                                 : motion_line<3>(entry, settings.scene_walls, end));
   for (const InletEntry& entry : settings.inlets) report.lines.push_back(inlet_line(entry, method));
   for (const OutletEntry& entry : settings.outlets)
     report.lines.push_back(method.dimension == 2 ? outlet_line<2>(entry) : outlet_line<3>(entry));
-  for (const WallGap& gap : gaps)
-    if (gap.width < least_gap) report.warnings.push_back(gap_warning(gap, walls));
   return report;
 }
 

@@ -68,10 +68,12 @@ Numbers middle_of(const ShapeSettings& shape, int dimension) {
 
 void declare_shape(Keys& keys, ShapeSettings& shape, ShapeKind kind) {
   const bool open = kind == ShapeKind::any;
-  keys.add("shape", shape.shape,
-           open ? "box, circle and polygon have an inside; arc and polyline are lines without thickness"
-                : "box, circle and polygon in 2D; box and sphere in 3D",
-           {.required = true});
+  keys.add(
+      "shape", shape.shape,
+      open ? "2D: box, circle and polygon have an inside, arc and polyline are lines without thickness; 3D: box and "
+             "sphere have an inside, polygon is flat and without thickness"
+           : "box, circle and polygon in 2D; box and sphere in 3D",
+      {.required = true});
   keys.only_where(shape.shape, {ShapeType::box}, [&] {
     keys.add("low", shape.low, "corner with the smallest coordinates", {.unit = "m", .required = true});
     keys.add("high", shape.high, "corner with the largest coordinates", {.unit = "m", .required = true});
@@ -81,7 +83,7 @@ void declare_shape(Keys& keys, ShapeSettings& shape, ShapeKind kind) {
     keys.add("radius", shape.radius, "radius", {.unit = "m", .range = positive, .required = true});
   };
   if (open) {
-    keys.only_where(shape.shape, {ShapeType::circle, ShapeType::arc}, round);
+    keys.only_where(shape.shape, {ShapeType::circle, ShapeType::sphere, ShapeType::arc}, round);
     keys.only_where(shape.shape, {ShapeType::arc}, [&] {
       keys.add("from", shape.from, "where the arc begins, from the x axis counter-clockwise",
                {.unit = "deg", .required = true});
@@ -115,8 +117,6 @@ void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings&
       keys.mistake(shape.shape,
                    fmt::format("a line has no inside; allowed: {}",
                                dimension == 2 ? "\"box\", \"circle\", \"polygon\"" : "\"box\", \"sphere\""));
-    if (kind == ShapeKind::any && shape.shape == ShapeType::sphere)
-      keys.mistake(shape.shape, "a sphere has three dimensions");
   }
   if (dimension == 3 && keys.usable(shape.rotate) && shape.rotate != 0.0)
     keys.mistake(shape.rotate, "turns in two dimensions only; allowed: 0 (deg)");

@@ -74,21 +74,21 @@ Vector<2> in_frame(const Pose<2>& own, const Pose<2>& other, const Vector<2>& po
   return result;
 }
 
-Pose<2> pose_at(const Wall& wall, double time) { return wall.motion ? (*wall.motion)(time) : Pose<2>{}; }
+Pose<2> pose_at(const Wall<2>& wall, double time) { return wall.motion ? (*wall.motion)(time) : Pose<2>{}; }
 
 /// Where points of one wall are beyond the other.
-std::optional<Crossing> crossing_of(const Wall& one, const Wall& other, const std::vector<double>& times,
+std::optional<Crossing> crossing_of(const Wall<2>& one, const Wall<2>& other, const std::vector<double>& times,
                                     double spacing) {
-  const std::vector<Vector<2>> points = points_along(one.outline, spacing);
+  const std::vector<Vector<2>> points = points_along(*one.surface, spacing);
   std::vector<Path> in_time(points.size());
   for (const double time : times) {
     const Pose<2> pose = pose_at(one, time), frame = pose_at(other, time);
     Path along;
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Vector<2> point = in_frame(frame, pose, points[k]);
-      const Side side = side_of(other.outline, point, depth * spacing);
-      const bool through_now = along.goes_through(other.outline, point, side);
-      const bool through_since = in_time[k].goes_through(other.outline, point, side);
+      const Side side = side_of(*other.surface, point, depth * spacing);
+      const bool through_now = along.goes_through(*other.surface, point, side);
+      const bool through_since = in_time[k].goes_through(*other.surface, point, side);
       if (through_now || through_since) return Crossing{time, pose.of_position(points[k])};
     }
   }
@@ -97,7 +97,7 @@ std::optional<Crossing> crossing_of(const Wall& one, const Wall& other, const st
 
 }  // namespace
 
-std::optional<Crossing> first_crossing(const Wall& one, const Wall& other, const std::vector<double>& times,
+std::optional<Crossing> first_crossing(const Wall<2>& one, const Wall<2>& other, const std::vector<double>& times,
                                        double spacing) {
   const auto first = crossing_of(one, other, times, spacing), second = crossing_of(other, one, times, spacing);
   if (first && second) return first->time <= second->time ? first : second;

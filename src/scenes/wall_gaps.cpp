@@ -12,22 +12,22 @@ constexpr double touching = 0.01;  // nearer faces have no gap [dp]
 constexpr double on_face = 1e-6;   // [dp], and of a gap's width
 
 /// True if the way from a point of a wall in a direction begins on a wet side. Of a corner, one of its faces suffices.
-bool begins_wet(const Wall& wall, const Outline& outline, const Vector<2>& point, const Vector<2>& direction,
+bool begins_wet(const Wall<2>& wall, const Outline& outline, const Vector<2>& point, const Vector<2>& direction,
                 double spacing) {
   return std::ranges::any_of(outline.edges(), [&](const OutlineEdge& edge) {
     const double share = edge.nearest_share(point);
     if (norm(edge.at(share) - point) > on_face * spacing) return false;
     const double rise = dot(direction, edge.normal(share)), along = on_face * norm(direction);
-    return (wall.wet_right && rise > -along) || (wall.wet_left && rise < along);
+    return (wall.wet_front && rise > -along) || (wall.wet_back && rise < along);
   });
 }
 
 /// The walls at a time.
 class Placed {
  public:
-  Placed(const std::vector<Wall>& walls, double time, double spacing)
+  Placed(const std::vector<Wall<2>>& walls, double time, double spacing)
       : walls_(walls), wet_(walls, time, spacing), spacing_(spacing) {
-    for (const Wall& wall : walls) outlines_.push_back(outline_at(wall, time));
+    for (const Wall<2>& wall : walls) outlines_.push_back(outline_at(wall, time));
   }
 
   std::optional<Gap> gap(std::size_t a, std::size_t b) const {
@@ -43,17 +43,17 @@ class Placed {
   }
 
  private:
-  const std::vector<Wall>& walls_;
-  WetSpace wet_;
+  const std::vector<Wall<2>>& walls_;
+  WetSpace<2> wet_;
   double spacing_;
   std::vector<Outline> outlines_;
 };
 
 /// Every so manieth of the times, so that it is no long work.
-std::vector<double> some_of(const std::vector<double>& times, const std::vector<Wall>& walls) {
+std::vector<double> some_of(const std::vector<double>& times, const std::vector<Wall<2>>& walls) {
   constexpr double most = 2e6;  // pairs of edges
   double edges = 0.0;
-  for (const Wall& wall : walls) edges += static_cast<double>(wall.outline.edges().size());
+  for (const Wall<2>& wall : walls) edges += static_cast<double>(wall.surface->edges().size());
   const double kept = std::clamp(most / (edges * edges), 10.0, static_cast<double>(times.size()) + 10.0);
   const auto stride = static_cast<std::size_t>(std::ceil(static_cast<double>(times.size()) / kept));
   std::vector<double> result;
@@ -63,7 +63,7 @@ std::vector<double> some_of(const std::vector<double>& times, const std::vector<
 
 }  // namespace
 
-std::vector<WallGap> wall_gaps(const std::vector<Wall>& walls, const std::vector<double>& times, double spacing) {
+std::vector<WallGap> wall_gaps(const std::vector<Wall<2>>& walls, const std::vector<double>& times, double spacing) {
   std::vector<WallGap> gaps;
   bool is_start = true;
   for (const double time : some_of(times, walls)) {

@@ -75,12 +75,12 @@ struct Arm {
 };
 
 /// The wet sides of all walls, as ways with the fluid on their right.
-std::vector<OutlineEdge> faces_of(const std::vector<Wall>& walls) {
+std::vector<OutlineEdge> faces_of(const std::vector<Wall<2>>& walls) {
   std::vector<OutlineEdge> faces;
-  for (const Wall& wall : walls) {
-    for (const OutlineEdge& edge : wall.outline.edges()) {
-      if (wall.wet_right) faces.push_back(edge);
-      if (wall.wet_left) faces.push_back(reversed(edge));
+  for (const Wall<2>& wall : walls) {
+    for (const OutlineEdge& edge : wall.surface->edges()) {
+      if (wall.wet_front) faces.push_back(edge);
+      if (wall.wet_back) faces.push_back(reversed(edge));
     }
   }
   return faces;
@@ -95,7 +95,7 @@ struct Meeting {
 
 class TargetSearch {
  public:
-  explicit TargetSearch(const Case& config) : config_(config), walls_(walls_of(config.scene_walls, config.motions)) {
+  explicit TargetSearch(const Case& config) : config_(config), walls_(walls_of<2>(config.scene_walls, config.motions)) {
     for (const OutletEntry& entry : config.outlets)
       if (auto outlet = outlet_of<2>(entry)) outlets_.push_back(std::move(*outlet));
   }
@@ -184,18 +184,18 @@ class TargetSearch {
     const double far = 2.0 * (norm(vector_of<2>(config_.domain.high) - vector_of<2>(config_.domain.low)));
     Meeting first;
     std::size_t face = 0;
-    for (const Wall& wall : walls_) {
-      const auto hit = wall.outline.first_hit(from, from + far * direction_);
-      const std::size_t sides = (wall.wet_right ? 1u : 0u) + (wall.wet_left ? 1u : 0u);
+    for (const Wall<2>& wall : walls_) {
+      const auto hit = wall.surface->first_hit(from, from + far * direction_);
+      const std::size_t sides = (wall.wet_front ? 1u : 0u) + (wall.wet_back ? 1u : 0u);
       if (hit && far * hit->share < first.distance) {
-        const OutlineEdge& edge = wall.outline.edges()[hit->edge];
+        const OutlineEdge& edge = wall.surface->edges()[hit->edge];
         const bool on_right = dot(edge.normal(edge.nearest_share(hit->point)), direction_) < 0.0;
         if (wall.motion) refuse(fmt::format("the wall {} that its jet meets moves", wall.name));
-        if (!(on_right ? wall.wet_right : wall.wet_left))
+        if (!(on_right ? wall.wet_front : wall.wet_back))
           refuse(fmt::format("its jet meets the dry side of the wall {}", wall.name));
         first = {face + sides * hit->edge + (on_right || sides == 1 ? 0u : 1u), far * hit->share, hit->point};
       }
-      face += sides * wall.outline.edges().size();
+      face += sides * wall.surface->edges().size();
     }
     return first;
   }
@@ -340,10 +340,10 @@ class TargetSearch {
   template <class Describe>
   void add_points(const std::array<Arm, 2>& arms, Describe&& describe) {
     const double tolerance = 1e-3 * target_.spacing;
-    const std::vector<WallPoint> points = wall_points(walls_, target_.spacing);
+    const std::vector<WallPoint<2>> points = wall_points(walls_, target_.spacing);
     target_.points.emplace();
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const WallPoint& point = points[k];
+      const WallPoint<2>& point = points[k];
       const auto x = distance_along(arms, point, tolerance);
       if (!x) continue;
       const auto [place, share] = describe(point.position, point.normal, *x);
@@ -351,7 +351,7 @@ class TargetSearch {
     }
   }
 
-  static std::optional<double> distance_along(const std::array<Arm, 2>& arms, const WallPoint& point,
+  static std::optional<double> distance_along(const std::array<Arm, 2>& arms, const WallPoint<2>& point,
                                               double tolerance) {
     for (const Arm& arm : arms) {
       double before = 0.0;
@@ -367,7 +367,7 @@ class TargetSearch {
   }
 
   const Case& config_;
-  std::vector<Wall> walls_;
+  std::vector<Wall<2>> walls_;
   std::vector<Outlet<2>> outlets_;
   Vector<2> from_, direction_;  // of the first jet
   JetTarget target_;

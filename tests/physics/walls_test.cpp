@@ -30,7 +30,7 @@ Vector<2> force_on(const Simulation<2>& simulation, const Scene<2>& walls, int w
   const Particles<2>& particles = simulation.particles();
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
     if (particles.type[i] != ParticleType::wall) continue;
-    const WallPoint& point = walls.wall_points[static_cast<std::size_t>(particles.id[i])];
+    const WallPoint<2>& point = walls.wall_points[static_cast<std::size_t>(particles.id[i])];
     if (point.wall == wall) force -= particles.pressure[i] * point.area * point.normal;
   }
   for (int k = 0; k < 2; ++k) force[k] = sum_over_ranks(comm, force[k]);

@@ -120,9 +120,9 @@ Scene<2> scene_with_box(bool outside, const Motion<2>& motion = {}) {
   std::vector<std::string> mistakes;
   Scene<2> scene = open_scene<2>();
   scene.walls = {{.name = "box",
-                  .outline = *make_box({{0.5, 0.5}}, {{1.0, 0.9}}, mistakes),
-                  .wet_right = outside,
-                  .wet_left = !outside,
+                  .surface = std::make_shared<const Outline>(*make_box({{0.5, 0.5}}, {{1.0, 0.9}}, mistakes)),
+                  .wet_front = outside,
+                  .wet_back = !outside,
                   .slip = true,
                   .motion = motion ? std::make_shared<const Motion<2>>(motion) : nullptr}};
   scene.wall_points = wall_points(scene.walls, dp);
@@ -135,7 +135,7 @@ Particles<2> wall_particles(const Scene<2>& scene, double time, Pressure pressur
   Particles<2> particles;
   const auto poses = poses_of(scene.walls, time);
   for (std::size_t k = 0; k < scene.wall_points.size(); ++k) {
-    const WallPoint& point = scene.wall_points[k];
+    const WallPoint<2>& point = scene.wall_points[k];
     const Vector<2> at = poses[static_cast<std::size_t>(point.wall)].of_position(point.position);
     particles.append({at, {}, pressure(at), 0.0, static_cast<std::int64_t>(k), ParticleType::wall});
   }
@@ -169,9 +169,9 @@ TEST(Probe, DoesNotSeeThroughAPlate) {
   std::vector<std::string> mistakes;
   Scene<2> scene = open_scene<2>();
   scene.walls = {{.name = "plate",
-                  .outline = *make_polyline({{{0.5, -1.0}}, {{0.5, 3.0}}}, mistakes),
-                  .wet_right = true,
-                  .wet_left = true,
+                  .surface = std::make_shared<const Outline>(*make_polyline({{{0.5, -1.0}}, {{0.5, 3.0}}}, mistakes)),
+                  .wet_front = true,
+                  .wet_back = true,
                   .slip = true,
                   .motion = {}}};
   scene.wall_points = wall_points(scene.walls, dp);

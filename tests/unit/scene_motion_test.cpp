@@ -40,11 +40,12 @@ void expect_at_rest(const Pose<2>& pose) {
   EXPECT_EQ(pose.acceleration_at(place), Vector<2>{});
 }
 
-const MotionFrame frame{.center = {{0.3, 0.2}}, .start = 0.5, .end = 4.5};
-constexpr Oscillation oscillation{
+const MotionFrame<2> frame{.center = {{0.3, 0.2}}, .start = 0.5, .end = 4.5};
+constexpr Oscillation<2> oscillation{
     .amplitude = {{0.3, -0.1}}, .angle = 0.4, .frequency = 0.7, .phase = 0.6, .ramp = 1.5};
-const std::vector<MotionPoint> table{{0.0, {{0.0, 0.0}}, 0.0},  {0.4, {{0.1, 0.0}}, 0.1},  {1.0, {{0.3, -0.2}}, 0.5},
-                                     {2.5, {{0.2, 0.4}}, -0.5}, {3.0, {{0.0, 0.3}}, -0.4}, {4.0, {{-0.2, 0.1}}, 0.2}};
+const std::vector<MotionPoint<2>> table{{0.0, {{0.0, 0.0}}, 0.0},  {0.4, {{0.1, 0.0}}, 0.1},
+                                        {1.0, {{0.3, -0.2}}, 0.5}, {2.5, {{0.2, 0.4}}, -0.5},
+                                        {3.0, {{0.0, 0.3}}, -0.4}, {4.0, {{-0.2, 0.1}}, 0.2}};
 
 TEST(PrescribedMotion, VelocitiesAndAccelerationsAreDerivativesOfThePlace) {
   for (const auto& motion :
@@ -64,7 +65,7 @@ TEST(PrescribedMotion, StandsBeforeItsStartAndAfterItsEnd) {
 }
 
 TEST(PrescribedMotion, TurnsAboutItsCentreThatMoves) {
-  const Motion<2> motion = steady_motion({.center = {{1.0, 2.0}}, .start = 0.0, .end = 1e30}, {{3.0, 0.0}}, pi);
+  const Motion<2> motion = steady_motion<2>({.center = {{1.0, 2.0}}, .start = 0.0, .end = 1e30}, {{3.0, 0.0}}, pi);
   const Pose<2> pose = motion(0.5);
   EXPECT_NEAR(norm(pose.of_position({{1.0, 2.0}}) - Vector<2>{{2.5, 2.0}}), 0.0, 1e-14);
   EXPECT_NEAR(norm(pose.of_position({{2.0, 2.0}}) - Vector<2>{{2.5, 3.0}}), 0.0, 1e-14);
@@ -86,8 +87,8 @@ TEST(PrescribedMotion, ARampRisesTwiceDifferentiably) {
 }
 
 TEST(PrescribedMotion, ASplineMeetsItsPointsAndIsSmoothThere) {
-  const Motion<2> motion = table_motion({.center = {}, .start = 0.0, .end = 1e30}, table);
-  for (const MotionPoint& point : table) {
+  const Motion<2> motion = table_motion<2>({.center = {}, .start = 0.0, .end = 1e30}, table);
+  for (const MotionPoint<2>& point : table) {
     const Pose<2> pose = motion(point.time);
     EXPECT_NEAR(norm(pose.of_position({}) - point.shift), 0.0, 1e-14);
     EXPECT_NEAR(pose.of_direction({{1.0, 0.0}})[1], std::sin(point.angle), 1e-14);
@@ -100,7 +101,7 @@ TEST(PrescribedMotion, ASplineMeetsItsPointsAndIsSmoothThere) {
   expect_at_rest(motion(4.0));
   // A parabola's cubic in between two points at rest: s^2 (3 - 2 s).
   const Motion<2> step =
-      table_motion({.center = {}, .start = 1.0, .end = 1e30}, {{0.0, {}, 0.0}, {2.0, {{1.0, 0.0}}, 0.0}});
+      table_motion<2>({.center = {}, .start = 1.0, .end = 1e30}, {{0.0, {}, 0.0}, {2.0, {{1.0, 0.0}}, 0.0}});
   EXPECT_NEAR(step(1.5).of_position({})[0], 0.0625 * 2.5, 1e-15);
 }
 
@@ -128,7 +129,7 @@ TEST(SceneMotion, SeveralWallsMayHaveOne) {
       EXPECT_GT(particles.position[i][0], 0.1);
     }
     if (particles.id[i] >= 120) continue;  // the tank's
-    const WallPoint& point = scene.wall_points[static_cast<std::size_t>(particles.id[i])];
+    const WallPoint<2>& point = scene.wall_points[static_cast<std::size_t>(particles.id[i])];
     EXPECT_NEAR(norm(particles.position[i] - point.position - Vector<2>{{0.1, 0.0}}), 0.0, 1e-14);
   }
   // The bounds hold the walls wherever they go, and speeds count those of the walls.

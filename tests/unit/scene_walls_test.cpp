@@ -57,7 +57,7 @@ about = [1.2, 0]
 translate = [0.5, 0]
 )"));
   ASSERT_EQ(scene.walls.size(), 5u);
-  const auto sides = [&](std::size_t k) { return std::pair(scene.walls[k].wet_right, scene.walls[k].wet_left); };
+  const auto sides = [&](std::size_t k) { return std::pair(scene.walls[k].wet_front, scene.walls[k].wet_back); };
   EXPECT_EQ(scene.walls[0].name, "tank");
   EXPECT_EQ(scene.walls[1].name, "wall_2");
   EXPECT_EQ(sides(0), std::pair(false, true));
@@ -67,9 +67,9 @@ translate = [0.5, 0]
   EXPECT_EQ(sides(4), std::pair(true, true));
   EXPECT_TRUE(scene.walls[0].slip);
   EXPECT_FALSE(scene.walls[1].slip);
-  EXPECT_DOUBLE_EQ(scene.walls[0].outline.volume(), 12.0);
-  EXPECT_NEAR(scene.walls[2].outline.length(), 0.125 * std::numbers::pi, 1e-14);
-  const auto& edges = scene.walls[4].outline.edges();
+  EXPECT_DOUBLE_EQ(scene.walls[0].surface->volume(), 12.0);
+  EXPECT_NEAR(scene.walls[2].surface->length(), 0.125 * std::numbers::pi, 1e-14);
+  const auto& edges = scene.walls[4].surface->edges();
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_NEAR(norm(edges[0].begin - Vector<2>{{1.7, 0.0}}), 0.0, 1e-14);
   EXPECT_NEAR(norm(edges[0].end - Vector<2>{{0.7, 0.0}}), 0.0, 1e-14);
@@ -90,7 +90,7 @@ TEST(SceneWalls, HaveAParticleOnEachPointBeforeTheFluid) {
     const bool is_wall = particles.type[i] == ParticleType::wall;
     EXPECT_EQ(is_wall, particles.id[i] < static_cast<std::int64_t>(scene.wall_points.size()));
     if (!is_wall) continue;
-    const WallPoint& point = scene.wall_points[static_cast<std::size_t>(particles.id[i])];
+    const WallPoint<2>& point = scene.wall_points[static_cast<std::size_t>(particles.id[i])];
     EXPECT_EQ(particles.position[i], point.position);
     EXPECT_EQ(scene.wall_normal(particles.position[i]), point.normal);
   }
@@ -333,7 +333,8 @@ TEST(SceneWalls, WhatIsWrongWithThemIsTold) {
   expect_mistake(mistakes("shape = \"polygon\"\npoints = [[0, 0], [1, 1], [0, 1], [0, 0]]\n"), "repeats the first");
   expect_mistake(mistakes("shape = \"arc\"\ncenter = [0, 0]\nradius = 1\nfrom = 10\nto = 370\n"),
                  "the arc from 10 to 370 degrees must be more than 0 and less than 360 degrees long");
-  expect_mistake(mistakes("shape = \"sphere\"\n"), "wall[1].shape = \"sphere\": a sphere has three dimensions");
+  expect_mistake(mistakes("shape = \"sphere\"\ncenter = [0, 0]\nradius = 1\n"),
+                 "wall[1].shape = \"sphere\": a sphere has three dimensions");
   expect_mistake(mistakes("shape = \"polyline\"\npoints = [[0, 0], [0.01, 0]]\n"), "shorter than a spacing, 0.01 m");
   expect_mistake(mistakes(circle + "[[wall]]\nname = \"wall_1\"\n" + line),
                  "case.toml:14: wall[2].name = \"wall_1\": the name is used twice, first at case.toml:9");
@@ -354,7 +355,7 @@ TEST(SceneWalls, WhatIsWrongWithThemIsTold) {
     return std::vector<std::string>{};
   };
   expect_mistake(in_space("[[wall]]\nshape = \"circle\"\ncenter = [0, 0, 0]\nradius = 1\n"),
-                 "case.toml:9: wall = [{...}]: walls of any shape exist in two dimensions; allowed: dimension = 2");
+                 "case.toml:10: wall[1].shape = \"circle\": circles, arcs and polylines have two dimensions");
   EXPECT_EQ(scene_mistakes("geometry = \"tank\"\n").size(), 1u);
   EXPECT_EQ(
       mistakes("shape = \"circle\"\ncenter = [0.5, 0.5]\nradius = -1\nwet = \"on\"\nslip = 1\nsplip = 2\n").size(), 4u);

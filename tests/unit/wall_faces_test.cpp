@@ -31,12 +31,20 @@ Outline circle(const Vector<2>& center, double radius) {
   return *make_circle(center, radius, mistakes);
 }
 Outline turned(const Outline& outline, double degrees) { return transformed(outline, {.rotation = rotation(degrees)}); }
-Wall wet_inside(Outline outline) {
-  return {.name = "wall", .outline = std::move(outline), .wet_right = false, .wet_left = true};
+Wall<2> wet_inside(Outline outline) {
+  return {.name = "wall",
+          .surface = std::make_shared<const Outline>(std::move(outline)),
+          .wet_front = false,
+          .wet_back = true};
 }
-Wall wet_outside(Outline outline) { return {.name = "wall", .outline = std::move(outline)}; }
-Wall plate(Outline outline) {
-  return {.name = "wall", .outline = std::move(outline), .wet_right = true, .wet_left = true};
+Wall<2> wet_outside(Outline outline) {
+  return {.name = "wall", .surface = std::make_shared<const Outline>(std::move(outline))};
+}
+Wall<2> plate(Outline outline) {
+  return {.name = "wall",
+          .surface = std::make_shared<const Outline>(std::move(outline)),
+          .wet_front = true,
+          .wet_back = true};
 }
 
 /// A cloud of particles and the pairs that walls leave of it.
@@ -95,7 +103,7 @@ std::vector<Vector<2>> points_in(const Outline& outline, double size, unsigned s
   return points_where([&](const Vector<2>& x) { return outline.distance(x) < -0.2; }, size, seed);
 }
 
-MirrorWalls<2> walls_of(std::vector<Wall> walls) { return {{}, walls, reach, 1.0}; }
+MirrorWalls<2> walls_of(std::vector<Wall<2>> walls) { return {{}, walls, reach, 1.0}; }
 
 /// Between what two particles see of each other.
 double largest_asymmetry(const Cloud& cloud) {
@@ -329,7 +337,8 @@ TEST(SpecularPairs, OfAPlateAreOnItsOwnSide) {
 
 TEST(SpecularPairs, OfALineHideWhatIsBehindIt) {
   const Outline line = polyline({{{-30.0, 0.0}}, {{30.0, 0.0}}});
-  const Wall wall{.name = "wall", .outline = line, .wet_right = false, .wet_left = true};
+  const Wall<2> wall{
+      .name = "wall", .surface = std::make_shared<const Outline>(line), .wet_front = false, .wet_back = true};
   const auto points = points_where([](const Vector<2>& x) { return std::abs(x[1]) > 0.2; }, 10.0);
   const Cloud cloud(points, walls_of({wall}));
   for (int i = 0; i < cloud.particles.owned; ++i) {
@@ -403,7 +412,7 @@ TEST(Walls, LetNothingPass) {
 
 TEST(Walls, ThatMoveTakeTheirImagesAndParticlesAlong) {
   const Outline box = polygon({{{-4.0, -4.0}}, {{4.0, -4.0}}, {{4.0, 4.0}}, {{-4.0, 4.0}}});
-  Wall wall = wet_inside(box);
+  Wall<2> wall = wet_inside(box);
   constexpr double omega = 0.7;
   const Vector<2> drift{{2.0, -1.0}};
   const Motion<2> motion = [&](double t) {

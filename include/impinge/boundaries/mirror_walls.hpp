@@ -19,10 +19,10 @@ namespace impinge {
 /// Specular pairs: a particle i sees a particle j along the straight line and once more along every path that is
 /// reflected at faces. The image of j stands where the path ends if it is unfolded; the faces are finite, so that not
 /// every particle sees it. A path run backwards is the same path, so that pairs are symmetric. Images at flat faces are
-/// the same for all that see them. At an arc each pair has its own: at the plane that touches the arc at q, the point
-/// of the wall nearest to (d_j x_i + d_i x_j)/(d_i + d_j), with d the distances to the wall. Its share in the sums is
-/// that of a ray tube, J = (l_1 + l_2)/(l_1 + l_2 + 2 k l_1 l_2/cos a), with l the lengths of the two parts of the
-/// path, a its angle to the normal, and k the curvature, positive where the wall bulges into the fluid.
+/// the same for all that see them. At a curved face each pair has its own: at the plane that touches the face at q, the
+/// point of the wall nearest to (d_j x_i + d_i x_j)/(d_i + d_j), with d the distances to the wall. Its share in the
+/// sums is that of a ray tube, J = (l_1 + l_2)/(l_1 + l_2 + 2 k l_1 l_2/cos a), with l the lengths of the two parts of
+/// the path, a its angle to the normal, and k the curvature, positive where the wall bulges into the fluid.
 template <int Dim>
 class MirrorWalls final : public PairFilter<Dim> {
  public:
@@ -32,7 +32,7 @@ class MirrorWalls final : public PairFilter<Dim> {
   MirrorWalls() = default;
 
   /// `reach`: largest radius of a sum over neighbours [m]; `spacing`: dp [m]. Planes that meet do so at right angles.
-  MirrorWalls(const std::vector<Face<Dim>>& planes, const std::vector<Wall>& walls, double reach, double spacing)
+  MirrorWalls(const std::vector<Face<Dim>>& planes, const std::vector<Wall<Dim>>& walls, double reach, double spacing)
       : faces_(planes, walls, reach, spacing), reach_(reach), spacing_(spacing) {}
 
   bool empty() const { return faces_.count() == 0; }
@@ -50,8 +50,8 @@ class MirrorWalls final : public PairFilter<Dim> {
   /// collective.
   void append_images(Particles<Dim>& particles);
 
-  /// Appends the images at arcs, of each pair its own. `around`: the particles within reach of an owned one. Not
-  /// collective.
+  /// Appends the images at curved faces, of each pair its own. `around`: the particles within reach of an owned one.
+  /// Not collective.
   void append_own_images(const std::function<std::span<const int>(int)>& around, Particles<Dim>& particles);
 
   /// Index of the first image, and the particle that each image is of.
@@ -105,6 +105,15 @@ class MirrorWalls final : public PairFilter<Dim> {
 
  private:
   const Reflection<Dim>& reflection(std::size_t image) const { return way(image).whole; }
+  /// Where a curved face is nearest to a particle.
+  struct FaceFoot {
+    int face;
+    Foot<Dim> foot;
+  };
+
+  void find_feet(const Particles<Dim>& particles);
+  std::span<const FaceFoot> feet(int i) const;
+  double own_factor(int i, int j, int face, const Meeting<Dim>& meeting) const;
   void append_paths(int particle, const Vector<Dim>& place, const MirrorPath& path, const Reflection<Dim>& outer);
   int way_of(const MirrorPath& path, const Reflection<Dim>& whole);
   Vector<Dim> velocity_of(std::size_t image, const Vector<Dim>& from, const Vector<Dim>& velocity) const;
@@ -115,8 +124,9 @@ class MirrorWalls final : public PairFilter<Dim> {
   struct Way {
     MirrorPath path;
     Reflection<Dim> whole;
-    bool moves;  ///< at a wall that moves
-    bool holds;  ///< at walls alone that a viscous fluid sticks to
+    bool moves;       ///< at a wall that moves
+    bool holds;       ///< at walls alone that a viscous fluid sticks to
+    Face<Dim> plane;  ///< of a curved face, which is the last before the particle that sees the image
   };
   const Way& way(std::size_t image) const { return ways_[static_cast<std::size_t>(way_[image])]; }
 
@@ -132,6 +142,8 @@ class MirrorWalls final : public PairFilter<Dim> {
   std::vector<char> tested_;         // per owned particle
   std::vector<int> own_start_;
   std::vector<OwnPair> own_;
+  std::vector<int> foot_start_;  // per particle, halo and images at flat faces included
+  std::vector<FaceFoot> feet_;
   // Where everything was when the images were appended.
   std::span<const Vector<Dim>> position_;
   std::span<const std::int64_t> id_;

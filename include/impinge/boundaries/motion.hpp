@@ -18,6 +18,13 @@ struct Pose {
   Matrix<Dim> bend;  ///< spin' + spin spin: a point at x accelerates by acceleration + bend x [1/s^2]
 
   Vector<Dim> of_position(const Vector<Dim>& r) const { return rotation * r + shift; }
+  /// The point r that is at x [m].
+  Vector<Dim> origin_of(const Vector<Dim>& x) const {
+    const Vector<Dim> offset = x - shift;
+    Vector<Dim> result;
+    for (int k = 0; k < Dim; ++k) result += offset[k] * rotation.row[static_cast<std::size_t>(k)];
+    return result;
+  }
   Vector<Dim> of_direction(const Vector<Dim>& r) const { return rotation * r; }
   Vector<Dim> velocity_at(const Vector<Dim>& x) const { return velocity + spin * x; }
   Vector<Dim> acceleration_at(const Vector<Dim>& x) const { return acceleration + bend * x; }

@@ -16,9 +16,9 @@ struct Scene {
   Box<Dim> bounds;                   ///< the region that particles may occupy [m]
   std::array<bool, Dim> periodic{};  ///< axes along which the bounds repeat
 
-  std::vector<Face<Dim>> mirrors;      ///< walls by images; empty where walls are particles
-  std::vector<Wall> walls;             ///< likewise, of finite size; in two dimensions
-  std::vector<WallPoint> wall_points;  ///< of these walls; the wall particle with the id k stands on point k
+  std::vector<Face<Dim>> mirrors;           ///< walls by images; empty where walls are particles
+  std::vector<Wall<Dim>> walls;             ///< likewise, of finite size
+  std::vector<WallPoint<Dim>> wall_points;  ///< of these walls; the wall particle with the id k stands on point k
   bool settles = false;  ///< the particles are no lattice at the walls: they are shifted before the first step
 
   std::vector<Inlet<Dim>> inlets;  ///< as they stand at the start

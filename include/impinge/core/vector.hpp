@@ -116,6 +116,11 @@ double determinant(const Matrix<Dim>& m) {
 /// a x b: positive where b points to the left of a.
 inline double cross(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
+/// a x b, normal to both; in a right-handed sense.
+inline Vector<3> cross(const Vector<3>& a, const Vector<3>& b) {
+  return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+
 /// Turned by 90 degrees, counter-clockwise.
 inline Vector<2> turned_left(const Vector<2>& a) { return {{-a[1], a[0]}}; }
 

@@ -68,6 +68,7 @@ class Outline final : public Shape<2> {
   NearestPoint nearest(const Vector<2>& point) const;
   /// The segment runs from one point to another; touching counts.
   std::optional<Hit> first_hit(const Vector<2>& from, const Vector<2>& to) const;
+  bool meets(const Vector<2>& from, const Vector<2>& to) const { return first_hit(from, to).has_value(); }
 
  private:
   bool encloses(const Vector<2>& point) const;

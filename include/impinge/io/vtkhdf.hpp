@@ -9,7 +9,7 @@
 namespace impinge {
 
 /// VTK's numbers for types of cells.
-inline constexpr std::uint8_t vtk_vertex = 1, vtk_poly_line = 4;
+inline constexpr std::uint8_t vtk_vertex = 1, vtk_poly_line = 4, vtk_triangle = 5;
 
 /// Creates the group /VTKHDF of an unstructured grid. Collective.
 void create_grid(Hdf5Writer& file);

@@ -29,13 +29,12 @@ class Offsets {
 };
 
 /// The pose of each wall at a time [s].
-std::vector<Pose<2>> poses_of(const std::vector<Wall>& walls, double time);
-
-/// The point of a body that is at x in this pose.
-Vector<2> origin_of(const Pose<2>& pose, const Vector<2>& x);
+template <int Dim>
+std::vector<Pose<Dim>> poses_of(const std::vector<Wall<Dim>>& walls, double time);
 
 /// True where a wall in its pose stands between two points. Walls that touch the first point do not count.
-bool is_hidden(const std::vector<Wall>& walls, const std::vector<Pose<2>>& poses, const Vector<2>& from,
-               const Vector<2>& to);
+template <int Dim>
+bool is_hidden(const std::vector<Wall<Dim>>& walls, const std::vector<Pose<Dim>>& poses, const Vector<Dim>& from,
+               const Vector<Dim>& to);
 
 }  // namespace impinge

@@ -46,7 +46,7 @@ class Probes {
 
   double spacing_;
   Offsets<Dim> offsets_;
-  std::vector<Wall> walls_;
+  std::vector<Wall<Dim>> walls_;
   std::vector<Probe> probes_;
   // Of each wall particle by its id: the riding probes that it counts for, and its weights there.
   std::unordered_map<std::int64_t, std::vector<std::pair<std::size_t, double>>> riders_;

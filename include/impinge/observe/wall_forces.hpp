@@ -21,13 +21,14 @@ class WallForces {
   /// Names and units of the values.
   std::vector<std::string> columns() const;
 
-  /// Of each wall at a time [s], the same on all ranks: the pressure's force [N/m], -p n area summed over its wall
-  /// particles, and its torque [N] about the origin of the wall's frame, counter-clockwise. Collective.
+  /// Of each wall at a time [s], the same on all ranks: the pressure's force, -p n area summed over its wall particles,
+  /// and its torque about the origin of the wall's frame; in two dimensions per length across, [N/m] and [N],
+  /// counter-clockwise. Collective.
   std::vector<double> measure(MPI_Comm comm, const Particles<Dim>& particles, double time) const;
 
  private:
-  std::vector<Wall> walls_;
-  std::vector<WallPoint> points_;
+  std::vector<Wall<Dim>> walls_;
+  std::vector<WallPoint<Dim>> points_;
 };
 
 }  // namespace impinge

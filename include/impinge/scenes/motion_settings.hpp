@@ -1,5 +1,5 @@
 #pragma once
-// Prescribed motions of walls: [[motion]] of a case file, in two dimensions.
+// Prescribed motions of walls: [[motion]] of a case file.
 
 #include <optional>
 #include <string>
@@ -24,6 +24,7 @@ struct MotionEntry {
   std::string name;
   MotionType type = MotionType::constant;
   Numbers center{};                ///< of rotation [m]
+  Numbers axis{0.0, 0.0, 1.0};     ///< of rotation, in three dimensions; of any length
   double start = 0.0;              ///< [s]
   double end = never;              ///< [s]
   Numbers velocity{};              ///< constant: of the centre [m/s]
@@ -45,19 +46,21 @@ void declare_motions(Keys& keys, std::vector<MotionEntry>& motions);
 /// Reads the tables that files give into times, positions and angles, which take the place of the file in the resolved
 /// case. `tables`: names and texts of the files; a name is relative to the case file that names it. Notes what is wrong
 /// with them. To be called once, before the motions are used.
-void take_motion_tables(Keys& keys, const std::vector<NamedText>& tables, std::vector<MotionEntry>& motions);
+void take_motion_tables(Keys& keys, int dimension, const std::vector<NamedText>& tables,
+                        std::vector<MotionEntry>& motions);
 
 /// Sets names that are not given.
 void derive_motions(const Keys& keys, std::vector<MotionEntry>& motions);
 
-/// Notes names that are used twice, ends before starts, and tables that are no motion.
-void check_motions(Keys& keys, const std::vector<MotionEntry>& motions);
+/// Notes names that are used twice, ends before starts, tables that are no motion, and axes without a direction.
+void check_motions(Keys& keys, int dimension, const std::vector<MotionEntry>& motions);
 
 /// True where all that the motion depends on has allowed values.
 bool is_usable(const Keys& keys, const MotionEntry& motion);
 
 /// Nothing if the table makes none.
-std::optional<Motion<2>> motion_of(const MotionEntry& motion);
+template <int Dim>
+std::optional<Motion<Dim>> motion_of(const MotionEntry& motion);
 
 /// At most about `most` times from 0 to `end` that tell the motion [s]; the first is 0.
 std::vector<double> times_of(const MotionEntry& motion, double end, std::size_t most);
