@@ -18,6 +18,14 @@ bool are_perpendicular(const WallFaces<Dim>& faces, int one, int two) {
   return std::abs(dot(faces.plane(one).normal, faces.plane(two).normal)) < right_angle;
 }
 
+/// True for faces back to back, of bodies that touch.
+template <int Dim>
+bool coincide(const Face<Dim>& one, const Face<Dim>& other) {
+  constexpr double rounding = 1e-12;  // of a distance, over that from the origin
+  return dot(one.normal, other.normal) < right_angle - 1.0 &&
+         std::abs(one.distance(other.point)) <= rounding * (norm(one.point) + norm(other.point));
+}
+
 /// The paths that differ in the order of faces at right angles: all have the same image.
 template <int Dim>
 std::vector<MirrorPath> same_paths(const WallFaces<Dim>& faces, const MirrorPath& path) {
@@ -60,7 +68,7 @@ void MirrorWalls<Dim>::append_paths(int particle, const Vector<Dim>& place, cons
       continue;
     if (path.count > 0) {
       const int last = path.face[0];
-      if (f == last || faces_.is_partner(f, last)) continue;
+      if (f == last || faces_.is_partner(f, last) || coincide(faces_.plane(f), faces_.plane(last))) continue;
       const bool perpendicular = are_perpendicular(faces_, f, last);
       if (perpendicular ? f < last : !ends) continue;
     }

@@ -13,6 +13,7 @@ constexpr double fade = 0.25;         // half the width over which lines by an e
 constexpr double same_angle = 1e-6;   // [rad]
 constexpr double on_face = 1e-9;      // of a point, and between a particle and a flat face after a reflection [dp]
 constexpr double on_curve = 1e-3;     // likewise at a curved one: its facets end at chords [dp]
+constexpr double at_end = 1e-9;       // share of a leg that meets no wall but the one that it is reflected at
 constexpr double beside = 0.25;       // a face goes on behind another at an inner edge [dp]
 constexpr double rounding = 1e-15;    // of a position, over its distance from the origin
 constexpr double least_depth = 0.25;  // of a line behind a curved face before it is blocked [dp]
@@ -271,7 +272,11 @@ double WallFaces<3>::beyond(int face, const Vector<3>& x) const {
 bool WallFaces<3>::holds(int face, const Vector<3>& point) const {
   const Cell* cell = cell_at(point);
   const auto is_own = [&](int e) { return edges_[static_cast<std::size_t>(e)].face == face; };
-  if (cell && std::ranges::none_of(cell->edges, is_own)) return true;  // its ends are far
+  if (!is_flat(face) && cell && std::ranges::none_of(cell->edges, is_own)) {  // its ends are far
+    const FaceData& data = at(face);
+    const double margin = beside * spacing_;
+    return data.patch->distance(motions_.at_rest(data.motion, point), margin) < margin;
+  }
   return beyond(face, point) <= (is_flat(face) ? on_face : on_curve) * spacing_;
 }
 
@@ -373,14 +378,15 @@ WallFaces<3>::Passing WallFaces<3>::passing(const Vector<3>& from, const Vector<
   return {norm(from + s * line - place), s, place};
 }
 
-// What a face leaves of a line up to a share of it.
-double WallFaces<3>::free_share(int face, const Vector<3>& from, const Vector<3>& to, double until) const {
+// What a face leaves of a line from one share of it to another.
+double WallFaces<3>::free_share(int face, const Vector<3>& from, const Vector<3>& to, double since,
+                                double until) const {
   const FaceData& data = at(face);
   if (is_flat(face)) {
     const double first = data.plane.distance(from), last = data.plane.distance(to);
     if ((first > 0.0) == (last > 0.0)) return 1.0;
     const double share = first / (first - last);
-    if (share >= until) return 1.0;
+    if (share < since || share >= until) return 1.0;
     return holds(face, from + share * (to - from)) ? 0.0 : 1.0;
   }
   const Vector<3> end = from + until * (to - from);
@@ -395,9 +401,9 @@ double WallFaces<3>::free_share(int face, const Vector<3>& from, const Vector<3>
   return std::clamp((full_depth - depth) / (full_depth - least_depth), 0.0, 1.0);
 }
 
-// What is left of a line up to a share of it, beside the faces and edges that it begins or ends at.
-double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, double until, const Cell& near,
-                                std::array<int, 2> skipped, const PassedEdges& passed) const {
+// What is left of a line from one share of it to another, beside the faces and edges that it begins or ends at.
+double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, double since, double until,
+                                const Cell& near, std::array<int, 2> skipped, const PassedEdges& passed) const {
   const double width = fade * spacing_, joined = on_curve * spacing_;
   if (from == to) return 1.0;
   bool passes = false;
@@ -416,7 +422,7 @@ double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, doub
   for (const int f : near.faces) {
     if (!at(f).patch || f == skipped[0] || f == skipped[1]) continue;
     if (at(f).partner >= 0 && (at(f).partner == skipped[0] || at(f).partner == skipped[1])) continue;
-    const double left = free_share(f, from, to, until);
+    const double left = free_share(f, from, to, since, until);
     if (left == 1.0) continue;
     const auto distance_from = [&](const Vector<3>& place) { return distance(f, place); };
     if (passed.any_on(distance_from, joined)) continue;
@@ -432,7 +438,7 @@ double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, doub
 
 double WallFaces<3>::line_factor(const Vector<3>& from, const Vector<3>& to) const {
   const Cell* cell = cell_at(from);
-  return cell ? leg_factor(from, to, 1.0, *cell, {-1, -1}, {}) : 1.0;
+  return cell ? leg_factor(from, to, 0.0, 1.0, *cell, {-1, -1}, {}) : 1.0;
 }
 
 double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, const MirrorPath& path,
@@ -441,7 +447,7 @@ double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, 
   if (!cell) return 1.0;
   const double width = fade * spacing_;
   Vector<3> begin = from, end = image;
-  double factor = 1.0;
+  double factor = 1.0, since = 0.0;
   std::array<int, 2> skipped{-1, -1};  // the faces that a leg begins and ends at
   PassedEdges passed;                  // of these faces
   for (const int f : path.faces()) {
@@ -474,14 +480,15 @@ double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, 
     if (!is_on && (apart >= width || ends_inside)) return 0.0;
     factor *= faded(is_on ? apart : -apart, width);
     skipped[1] = f;
-    factor *= leg_factor(begin, end, share, *cell, skipped, passed);
+    factor *= leg_factor(begin, end, since, (1.0 - at_end) * share, *cell, skipped, passed);
+    since = at_end;
     if (factor == 0.0) return 0.0;
     begin = hit;
     end = reflection_at(mirror).of_position(end);
     skipped = {f, -1};
     passed.drop(before);
   }
-  return factor * leg_factor(begin, end, 1.0, *cell, skipped, passed);
+  return factor * leg_factor(begin, end, since, 1.0, *cell, skipped, passed);
 }
 
 // The first face that a way meets from its wet side, or an open surface from either side.

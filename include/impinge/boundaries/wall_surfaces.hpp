@@ -56,7 +56,7 @@ class WallFaces<3> {
   bool find_foot(int face, const Vector<3>& x, Foot<3>& foot) const;
   /// Where the path from one position to another by a curved face meets it.
   Meeting<3> meeting(int, const Vector<3>& one, const Foot<3>& foot, const Vector<3>& two,
-                            const Foot<3>& other_foot) const;
+                     const Foot<3>& other_foot) const;
   /// True where a point of a face has not gone over its end.
   bool holds(int face, const Vector<3>& point) const;
   /// The plane of a flat face.
@@ -121,8 +121,8 @@ class WallFaces<3> {
   PatchPoint nearest(int face, const Vector<3>& x) const;
   double beyond(int face, const Vector<3>& x) const;
   static Passing passing(const Vector<3>& from, const Vector<3>& to, const EdgeData& edge);
-  double free_share(int face, const Vector<3>& from, const Vector<3>& to, double until) const;
-  double leg_factor(const Vector<3>& from, const Vector<3>& to, double until, const Cell& near,
+  double free_share(int face, const Vector<3>& from, const Vector<3>& to, double since, double until) const;
+  double leg_factor(const Vector<3>& from, const Vector<3>& to, double since, double until, const Cell& near,
                     std::array<int, 2> skipped, const PassedEdges& passed) const;
   bool first_hit(const Vector<3>& from, const Vector<3>& to, int skipped, int& face, double& share) const;
 
