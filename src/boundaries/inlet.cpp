@@ -1,6 +1,8 @@
 #include "impinge/boundaries/inlet.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace impinge {
 namespace {
@@ -26,9 +28,28 @@ double Inlet<Dim>::speed_at(double time) const {
 }
 
 template <int Dim>
+Vector<Dim> Inlet<Dim>::in_row(double distance, std::size_t k, std::int64_t first_id) const {
+  if constexpr (Dim == 3) {
+    if (radius > 0.0) {
+      // By the golden angle, so that no row stands as another near to it does.
+      const auto rows_before = static_cast<double>(first_id / static_cast<std::int64_t>(section.size()));
+      const double angle = 2.0 * std::numbers::pi * std::fmod((std::numbers::phi - 1.0) * rows_before, 1.0);
+      const double cosine = std::cos(angle), sine = std::sin(angle);
+      const auto [x, y] = section[k];
+      return at(distance, {cosine * x - sine * y, sine * x + cosine * y});
+    }
+  }
+  return at(distance, section[k]);
+}
+
+template <int Dim>
 double Inlet<Dim>::distance_from_block(const Vector<Dim>& position) const {
   const double past = distance_past(position);
   double distance = std::max({0.0, past, -rows * spacing - past});
+  if (radius > 0.0) {
+    const double apart = norm(position - corner - past * direction);
+    return std::max({distance, apart - radius, inner_radius - apart});
+  }
   for (std::size_t k = 0; k < across.size(); ++k) {
     const double place = dot(position - corner, across[k]);
     const auto [low, high] = std::ranges::minmax(section, {}, [k](const auto& x) { return x[k]; });
@@ -87,7 +108,7 @@ BoundaryFlow pass_open_boundaries(std::vector<Inlet<Dim>>& inlets, const std::ve
     while (inlet.last_row - inlet.spacing >= -inlet.rows * inlet.spacing) {
       inlet.last_row -= inlet.spacing;
       for (std::size_t k = 0; k < inlet.section.size(); ++k) {
-        const Vector<Dim> position = inlet.at(inlet.last_row, inlet.section[k]);
+        const Vector<Dim> position = inlet.in_row(inlet.last_row, k, next_id);
         if (owns(position))
           particles.append(
               {position, inlet.velocity(), 0.0, 0.0, next_id + static_cast<std::int64_t>(k), ParticleType::inlet});

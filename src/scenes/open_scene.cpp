@@ -64,9 +64,8 @@ bool is_in_block(const std::vector<Inlet<Dim>>& inlets, const Vector<Dim>& place
 template <int Dim>
 std::vector<Inlet<Dim>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
   std::vector<Inlet<Dim>> inlets;
-  if constexpr (Dim == 2)
-    for (const InletEntry& entry : settings.inlets)
-      inlets.push_back(inlet_of(entry, method.particles.spacing, method.kernel));
+  for (const InletEntry& entry : settings.inlets)
+    inlets.push_back(inlet_of<Dim>(entry, method.particles.spacing, method.kernel));
   return inlets;
 }
 
@@ -79,8 +78,8 @@ void fill_inlets(const std::vector<Inlet<Dim>>& inlets, std::int64_t id, int ran
     const auto of_row = static_cast<std::int64_t>(inlet.section.size());
     for_share(inlet.rows * of_row, rank, ranks, [&](std::int64_t k) {
       const double behind = inlet.last_row + static_cast<double>(k / of_row) * inlet.spacing;
-      particles.append({inlet.at(behind, inlet.section[static_cast<std::size_t>(k % of_row)]), inlet.velocity(), 0.0,
-                        0.0, id + k, ParticleType::inlet});
+      particles.append({inlet.in_row(behind, static_cast<std::size_t>(k % of_row), id + k - k % of_row),
+                        inlet.velocity(), 0.0, 0.0, id + k, ParticleType::inlet});
     });
     id += inlet.rows * of_row;
   }

@@ -107,26 +107,54 @@ void add_walls(const Keys& keys, const SceneSettings& s, const SceneInputs& in, 
   for (const SoundWall<3>& wall : sound_walls<3>(keys, s, in)) bounds.add(bounds_of(keys, wall, s, in).box());
 }
 
-/// An inlet's block with the row that may still be behind it, and its entry.
+/// An inlet and its entry.
+template <int Dim>
 struct SoundInlet {
   const InletEntry* entry;
-  Inlet<2> inlet;
-
-  Outline block() const { return way_of(inlet, entry->width, -(inlet.rows + 1) * inlet.spacing, 0.0, 0.0); }
+  Inlet<Dim> inlet;
 };
 
-/// The inlets that exist, in two dimensions.
-std::vector<SoundInlet> sound_inlets(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  std::vector<SoundInlet> inlets;
-  if (!keys.usable(in.dimension, in.spacing, in.kernel.radius, in.kernel.laplacian_radius) || in.dimension != 2)
+/// A box around an inlet's rows and the one that may still be behind them.
+Box<2> bounds_of(const SoundInlet<2>& sound) {
+  const Inlet<2>& inlet = sound.inlet;
+  return way_of(inlet, sound.entry->width, -(inlet.rows + 1) * inlet.spacing, 0.0, 0.0).bounds();
+}
+Box<3> bounds_of(const SoundInlet<3>& sound) {
+  const Inlet<3>& inlet = sound.inlet;
+  Bounds bounds;
+  for (const double past : {-(inlet.rows + 1) * inlet.spacing, 0.0}) {
+    if (inlet.radius > 0.0) {
+      Box<3> ring{inlet.at(past, {}), inlet.at(past, {})};
+      for (int k = 0; k < 3; ++k) {
+        const double along = inlet.direction[k], size = inlet.radius * std::sqrt(std::max(0.0, 1.0 - along * along));
+        ring.low[k] -= size;
+        ring.high[k] += size;
+      }
+      bounds.add(ring);
+    } else {
+      for (const double a : {0.0, sound.entry->width})
+        for (const double b : {0.0, sound.entry->height})
+          bounds.add(Box<3>{inlet.at(past, {a, b}), inlet.at(past, {a, b})});
+    }
+  }
+  return bounds.box();
+}
+
+/// The inlets that exist.
+template <int Dim>
+std::vector<SoundInlet<Dim>> sound_inlets(const Keys& keys, const SceneSettings& s, const SceneInputs& in) {
+  std::vector<SoundInlet<Dim>> inlets;
+  if (!keys.usable(in.dimension, in.spacing, in.kernel.radius, in.kernel.laplacian_radius) || in.dimension != Dim)
     return inlets;
   for (const InletEntry& entry : s.inlets)
-    if (is_usable(keys, in.spacing, entry)) inlets.push_back({&entry, inlet_of(entry, in.spacing, in.kernel)});
+    if (is_usable(keys, Dim, in.spacing, entry))
+      inlets.push_back({&entry, inlet_of<Dim>(entry, in.spacing, in.kernel)});
   return inlets;
 }
 
 void add_inlets(const Keys& keys, const SceneSettings& s, const SceneInputs& in, Bounds& bounds) {
-  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) bounds.add(inlet.block().bounds());
+  for (const SoundInlet<2>& inlet : sound_inlets<2>(keys, s, in)) bounds.add(bounds_of(inlet));
+  for (const SoundInlet<3>& inlet : sound_inlets<3>(keys, s, in)) bounds.add(bounds_of(inlet));
 }
 
 /// Where an outline comes into another that has an inside.
@@ -138,7 +166,7 @@ std::optional<Vector<2>> common_place(const Outline& area, const Outline& outlin
 }
 
 /// What is wrong with an inlet between walls that stand as they do at a time; nothing if all is well.
-std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall<2>>& walls, double time,
+std::string inlet_problem(const SoundInlet<2>& inlet, const std::vector<SoundWall<2>>& walls, double time,
                           const SceneInputs& in) {
   constexpr double beside = 0.25;  // so near to a side, a wall is along it [dp]
   const double margin = beside * in.spacing, reach = in.kernel.largest() * in.spacing, width = inlet.entry->width;
@@ -164,13 +192,39 @@ std::string inlet_problem(const SoundInlet& inlet, const std::vector<SoundWall<2
   return "";
 }
 
+std::string inlet_problem(const SoundInlet<3>& sound, const std::vector<SoundWall<3>>& walls, double time,
+                          const SceneInputs& in) {
+  const Inlet<3>& inlet = sound.inlet;
+  const double reach = in.kernel.largest() * in.spacing;
+  std::vector<Wall<3>> all;
+  for (const SoundWall<3>& wall : walls) all.push_back(wall.wall);
+  const WetSpace<3> wet(all, time, in.spacing);
+  const auto text = [](const Vector<3>& x) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", x[0], x[1], x[2]); };
+  for (std::size_t k = 0; k < inlet.section.size(); ++k) {
+    for (const double past : {-inlet.rows * inlet.spacing, -0.5 * inlet.rows * inlet.spacing, 0.0})
+      if (const Vector<3> place = inlet.at(past, inlet.section[k]); !wet.contains(place))
+        return fmt::format("the inlet is cut by a wall or on the dry side of the walls, at {}", text(place));
+    for (const Wall<3>& wall : all) {
+      const Pose<3> pose = wall.motion ? (*wall.motion)(time) : Pose<3>{};
+      const Vector<3> from = inlet.at(0.0, inlet.section[k]);
+      if (wall.surface->meets(pose.origin_of(from), pose.origin_of(from + reach * inlet.direction)))
+        return fmt::format(
+            "blows into the wall \"{}\", before {}; allowed: a wall farther away than {:.4g} m, or along "
+            "its sides",
+            wall.name, text(from), reach);
+    }
+  }
+  return "";
+}
+
 /// Notes inlets that walls are in the way of, at the start or later.
+template <int Dim>
 void check_inlets_and_walls(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  const std::vector<SoundWall<2>> walls = sound_walls<2>(keys, s, in);
-  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) {
+  const std::vector<SoundWall<Dim>> walls = sound_walls<Dim>(keys, s, in);
+  for (const SoundInlet<Dim>& inlet : sound_inlets<Dim>(keys, s, in)) {
     const double start = std::max(inlet.entry->start, 0.0);
     std::vector<double> times{start};
-    for (const SoundWall<2>& wall : walls)
+    for (const SoundWall<Dim>& wall : walls)
       for (const double time : times_of(keys, *wall.entry, s, in, some_times))
         if (time > start && time <= inlet.entry->stop) times.push_back(time);
     for (const double time : times) {
@@ -183,21 +237,22 @@ void check_inlets_and_walls(Keys& keys, const SceneSettings& s, const SceneInput
 }
 
 /// Notes inlets that are faster than particles may be, or whose rows are out of the bounds.
+template <int Dim>
 void check_inlets_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
-  for (const SoundInlet& inlet : sound_inlets(keys, s, in)) {
+  for (const SoundInlet<Dim>& inlet : sound_inlets<Dim>(keys, s, in)) {
     const double speed = largest_speed(*inlet.entry);
     if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds) && speed > in.time.max_speed)
       keys.mistake(inlet.entry->center, fmt::format("blows at {:.4g} m/s; allowed: up to time.max_speed, {} (m/s)",
                                                     speed, number_text(in.time.max_speed)));
     if (!keys.usable(s.domain.low, s.domain.high)) continue;
-    const Box<2> box = inlet.block().bounds();
-    for (int k = 0; k < 2; ++k) {
+    const Box<Dim> box = bounds_of(inlet);
+    for (int k = 0; k < Dim; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       if (box.low[k] >= s.domain.low[axis] && box.high[k] <= s.domain.high[axis]) continue;
       keys.mistake(inlet.entry->center,
                    fmt::format("its rows reach from {0} = {1:.6g} to {2:.6g} m, out of the bounds; allowed: [{3:.6g}, "
                                "{4:.6g}] (m), and domain",
-                               k == 0 ? "x" : "y", box.low[k], box.high[k], s.domain.low[axis], s.domain.high[axis]));
+                               "xyz"[k], box.low[k], box.high[k], s.domain.low[axis], s.domain.high[axis]));
       break;
     }
   }
@@ -367,8 +422,6 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
   if (has_walls && keys.usable(in.walls.model) && in.walls.model != WallModel::mirror)
     keys.mistake(s.scene_walls, "walls of any shape are no particles; allowed: walls.model = \"mirror\"");
   const bool has_inlets = keys.usable(s.inlets) && !s.inlets.empty();
-  if (has_inlets && keys.usable(in.dimension) && in.dimension != 2)
-    keys.mistake(s.inlets, "inlets of a scene exist in two dimensions; allowed: dimension = 2");
   if (!keys.usable(in.dimension, in.spacing)) return;
   if (keys.usable(s.outlets)) check_outlets(keys, in.dimension, s.outlets);
   if (keys.usable(s.motions)) check_motions(keys, in.dimension, s.motions);
@@ -376,10 +429,10 @@ void check_open_scene(Keys& keys, const SceneSettings& s, const SceneInputs& in)
     check_walls(keys, in.dimension, in.spacing, s.scene_walls, s.motions);
     in.dimension == 2 ? check_motion<2>(keys, s, in) : check_motion<3>(keys, s, in);
   }
-  if (has_inlets && in.dimension == 2) {
-    check_inlets(keys, in.spacing, in.kernel, s.inlets);
-    check_inlets_and_walls(keys, s, in);
-    check_inlets_in_domain(keys, s, in);
+  if (has_inlets) {
+    check_inlets(keys, in.dimension, in.spacing, in.kernel, s.inlets);
+    in.dimension == 2 ? check_inlets_and_walls<2>(keys, s, in) : check_inlets_and_walls<3>(keys, s, in);
+    in.dimension == 2 ? check_inlets_in_domain<2>(keys, s, in) : check_inlets_in_domain<3>(keys, s, in);
   }
   if (!keys.usable(s.regions, s.inlets, s.domain.low, s.domain.high)) return;
   if (s.regions.empty() && s.inlets.empty()) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 #include "impinge/scenes/check_names.hpp"
 
@@ -14,6 +17,126 @@ constexpr double most_of_row = 1e6;  // particles
 
 bool has_allowed_width(const InletEntry& inlet, double spacing) {
   return inlet.width >= (1.0 - 1e-9) * spacing && inlet.width <= most_of_row * spacing;
+}
+
+double area_of(const InletEntry& inlet) {
+  if (inlet.section == InletSection::rectangle) return inlet.width * inlet.height;
+  const double hole = inlet.section == InletSection::annulus ? inlet.inner_radius : 0.0;
+  return std::numbers::pi * (inlet.radius * inlet.radius - hole * hole);
+}
+
+/// What is wrong with the section's size; nothing if all is well.
+std::string size_problem(const InletEntry& inlet, int dimension, double spacing) {
+  if (dimension == 2) {
+    if (has_allowed_width(inlet, spacing)) return "";
+    return fmt::format("{} particle wide; allowed: [{}, {:.6g}] (m)",
+                       inlet.width < spacing ? "less than a" : "more than a million", number_text(spacing),
+                       most_of_row * spacing);
+  }
+  const double count = area_of(inlet) / (spacing * spacing);
+  if (inlet.section == InletSection::annulus && inlet.inner_radius >= inlet.radius)
+    return fmt::format("not wider than its inner radius; allowed: > {} (m)", number_text(inlet.inner_radius));
+  if (!(count <= most_of_row)) return fmt::format("makes some {:.2g} particles of a row; allowed: at most 1e6", count);
+  const double narrow = inlet.section == InletSection::rectangle ? std::min(inlet.width, inlet.height)
+                        : inlet.section == InletSection::annulus ? inlet.radius - inlet.inner_radius
+                                                                 : 2.0 * inlet.radius;
+  if (narrow < (1.0 - 1e-9) * spacing)
+    return fmt::format("less than a particle wide, {:.4g} m; allowed: >= {} (m)", narrow, number_text(spacing));
+  return "";
+}
+
+/// Places that fill a ring evenly: a spiral (Vogel 1979), then pushed apart.
+std::vector<std::array<double, 2>> places_in_ring(double radius, double inner_radius, std::size_t count) {
+  constexpr int passes = 60;
+  constexpr double reach = 1.6, way = 0.12;  // [mean distance]
+  const double pi = std::numbers::pi, square = inner_radius * inner_radius;
+  const double area = radius * radius - square, apart = std::sqrt(pi * area / static_cast<double>(count));
+  std::vector<Vector<2>> places;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double r = std::sqrt(square + area * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+    const double angle = 2.0 * pi * std::fmod((std::numbers::phi - 1.0) * static_cast<double>(k), 1.0);
+    places.push_back({{r * std::cos(angle), r * std::sin(angle)}});
+  }
+  for (int pass = 0; pass < passes; ++pass) {
+    std::map<std::pair<int, int>, std::vector<std::size_t>> cells;
+    const auto cell = [&](double x) { return static_cast<int>(std::floor(x / (reach * apart))); };
+    for (std::size_t k = 0; k < count; ++k) cells[{cell(places[k][0]), cell(places[k][1])}].push_back(k);
+    std::vector<Vector<2>> next = places;
+    for (std::size_t k = 0; k < count; ++k) {
+      Vector<2> push;
+      const auto add = [&](const Vector<2>& other) {
+        const Vector<2> offset = places[k] - other;
+        const double distance = norm(offset) / apart;
+        if (distance > 1e-9 && distance < reach) push += (1.0 - distance / reach) / distance * offset;
+      };
+      for (int a = -1; a <= 1; ++a)
+        for (int b = -1; b <= 1; ++b)
+          if (const auto found = cells.find({cell(places[k][0]) + a, cell(places[k][1]) + b}); found != cells.end())
+            for (const std::size_t other : found->second) {
+              if (other != k) add(places[other]);
+              // Its images beyond the rims.
+              const double r = norm(places[other]);
+              if (radius - r < reach * apart) add((2.0 * radius - r) / r * places[other]);
+              if (inner_radius > 0.0 && r - inner_radius < reach * apart)
+                add((2.0 * inner_radius - r) / r * places[other]);
+            }
+      next[k] += way * push;
+      const double r = norm(next[k]), least = inner_radius > 0.0 ? inner_radius + 0.3 * apart : 0.0;
+      if (const double kept = std::clamp(r, least, radius - 0.3 * apart); kept != r) next[k] *= kept / r;
+    }
+    places = next;
+  }
+  std::vector<std::array<double, 2>> result;
+  for (const Vector<2>& place : places) result.push_back({place[0], place[1]});
+  return result;
+}
+
+/// Two unit vectors normal to a direction and each other; the first is along `wish` as far as it can be.
+std::array<Vector<3>, 2> across(const Vector<3>& direction, const Vector<3>& wish) {
+  Vector<3> first = wish - dot(wish, direction) * direction;
+  if (!(norm(first) > 1e-9 * norm(wish))) {
+    Vector<3> axis;
+    int least = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::abs(direction[k]) < std::abs(direction[least])) least = k;
+    axis[least] = 1.0;
+    first = axis - dot(axis, direction) * direction;
+  }
+  first *= 1.0 / norm(first);
+  return {first, cross(direction, first)};
+}
+
+/// Direction, section and distance of the rows.
+void lay_section(const InletEntry& entry, double spacing, Inlet<2>& inlet) {
+  const Vector<2> direction = vector_of<2>(entry.direction);
+  inlet.direction = 1.0 / norm(direction) * direction;
+  inlet.across = {Vector<2>{{-inlet.direction[1], inlet.direction[0]}}};
+  inlet.corner = vector_of<2>(entry.center) - 0.5 * entry.width * inlet.across[0];
+  const auto count = static_cast<int>(std::clamp(std::round(entry.width / spacing), 1.0, most_of_row));
+  const double apart = entry.width / count;
+  for (int k = 0; k < count; ++k) inlet.section.push_back({(k + 0.5) * apart});
+  inlet.spacing = spacing * spacing / apart;
+}
+
+void lay_section(const InletEntry& entry, double spacing, Inlet<3>& inlet) {
+  const Vector<3> direction = vector_of<3>(entry.direction);
+  inlet.direction = 1.0 / norm(direction) * direction;
+  inlet.across = across(inlet.direction, vector_of<3>(entry.across));
+  inlet.corner = vector_of<3>(entry.center);
+  if (entry.section == InletSection::rectangle) {
+    inlet.corner -= 0.5 * entry.width * inlet.across[0] + 0.5 * entry.height * inlet.across[1];
+    const double columns = std::max(1.0, std::round(entry.width / spacing));
+    const double rows = std::max(1.0, std::round(entry.height / spacing));
+    for (double b = 0.5; b < rows; b += 1.0)
+      for (double a = 0.5; a < columns; a += 1.0)
+        inlet.section.push_back({a * entry.width / columns, b * entry.height / rows});
+  } else {
+    inlet.radius = entry.radius;
+    inlet.inner_radius = entry.section == InletSection::annulus ? entry.inner_radius : 0.0;
+    const double count = std::max(1.0, std::round(area_of(entry) / (spacing * spacing)));
+    inlet.section = places_in_ring(inlet.radius, inlet.inner_radius, static_cast<std::size_t>(count));
+  }
+  inlet.spacing = spacing * spacing * spacing * static_cast<double>(inlet.section.size()) / area_of(entry);
 }
 
 void check_speeds(Keys& keys, const InletEntry& inlet) {
@@ -33,14 +156,65 @@ void check_speeds(Keys& keys, const InletEntry& inlet) {
                                           number_text(*(fall + 1)), number_text(*fall), number_text(*fall)));
 }
 
+bool has_length(const Numbers& direction, int dimension) {
+  return dimension == 2 ? norm(vector_of<2>(direction)) > 0.0 : norm(vector_of<3>(direction)) > 0.0;
+}
+
+/// True where the numbers that a section needs have allowed values.
+bool has_size(const Keys& keys, const InletEntry& inlet) {
+  switch (inlet.section) {
+    case InletSection::line:
+      return keys.usable(inlet.width);
+    case InletSection::rectangle:
+      return keys.usable(inlet.width, inlet.height, inlet.across);
+    case InletSection::circle:
+      return keys.usable(inlet.radius);
+    case InletSection::annulus:
+      return keys.usable(inlet.radius, inlet.inner_radius);
+  }
+  return false;
+}
+
+/// Notes inlets in space whose rows stand nearer to each other than half a spacing.
+void check_overlaps(Keys& keys, double spacing, const KernelSettings& kernel, const std::vector<InletEntry>& inlets) {
+  for (std::size_t b = 0; b < inlets.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (!is_usable(keys, 3, spacing, inlets[a]) || !is_usable(keys, 3, spacing, inlets[b])) continue;
+      const Inlet<3> one = inlet_of<3>(inlets[a], spacing, kernel), other = inlet_of<3>(inlets[b], spacing, kernel);
+      bool overlap = false;
+      for (int row = 0; row < other.rows; ++row)
+        for (std::size_t k = 0; k < other.section.size(); ++k)
+          overlap |= one.distance_from_block(other.in_row(-(row + 0.5) * other.spacing, k, 0)) <= 0.0;
+      if (overlap)
+        keys.mistake(inlets[b].center, fmt::format("its rows overlap those of the inlet \"{}\", given at {}",
+                                                   inlets[a].name, keys.place(inlets[a].center)));
+    }
+  }
+}
+
 }  // namespace
 
 void declare_openings(Keys& keys, std::vector<InletEntry>& inlets, std::vector<OutletEntry>& outlets) {
-  keys.list("inlet", inlets, "where fluid enters, 2D", {.fixed = true}, [](Keys& inner, InletEntry& inlet) {
+  keys.list("inlet", inlets, "where fluid enters", {.fixed = true}, [](Keys& inner, InletEntry& inlet) {
     inner.add("name", inlet.name, "name of the inlet", {.fallback = "inlet_<number>"});
-    inner.add("center", inlet.center, "middle of the inlet's line", {.unit = "m", .required = true});
-    inner.add("direction", inlet.direction, "of the flow, normal to the line, of any length", {.required = true});
-    inner.add("width", inlet.width, "length of the line", {.unit = "m", .range = positive, .required = true});
+    inner.add("section", inlet.section, "what the inlet's plane has of fluid: in 2D a line, in 3D one of the others",
+              {.fallback = "line"});
+    inner.add("center", inlet.center, "middle of the section", {.unit = "m", .required = true});
+    inner.add("direction", inlet.direction, "of the flow, normal to the section, of any length", {.required = true});
+    inner.only_where(inlet.section, {InletSection::line, InletSection::rectangle}, [&] {
+      inner.add("width", inlet.width, "length of the line, or of a side of the rectangle",
+                {.unit = "m", .range = positive, .required = true});
+    });
+    inner.only_where(inlet.section, {InletSection::rectangle}, [&] {
+      inner.add("height", inlet.height, "of the other side", {.unit = "m", .range = positive, .required = true});
+      inner.add("across", inlet.across, "direction of the width, of any length", {.required = true});
+    });
+    inner.only_where(inlet.section, {InletSection::circle, InletSection::annulus}, [&] {
+      inner.add("radius", inlet.radius, "outer radius", {.unit = "m", .range = positive, .required = true});
+    });
+    inner.only_where(inlet.section, {InletSection::annulus}, [&] {
+      inner.add("inner_radius", inlet.inner_radius, "inner radius", {.unit = "m", .range = positive, .required = true});
+    });
     inner.add("speed", inlet.speed, "speed of the flow", {.unit = "m/s", .range = not_negative});
     inner.add("times", inlet.times, "times of the speeds", {.unit = "s"});
     inner.add("speeds", inlet.speeds, "in the place of speed: linear between the times, constant before and after",
@@ -64,30 +238,40 @@ void derive_openings(const Keys& keys, int dimension, std::vector<InletEntry>& i
   }
 }
 
-void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, const std::vector<InletEntry>& inlets) {
+void check_inlets(Keys& keys, int dimension, double spacing, const KernelSettings& kernel,
+                  const std::vector<InletEntry>& inlets) {
   check_names(keys, inlets);
   for (const InletEntry& inlet : inlets) {
     check_speeds(keys, inlet);
-    if (keys.usable(inlet.direction) && !(norm(vector_of<2>(inlet.direction)) > 0.0))
+    if (keys.usable(inlet.direction) && !has_length(inlet.direction, dimension))
       keys.mistake(inlet.direction, "no direction; allowed: any vector but 0");
-    if (keys.usable(inlet.width)) {
-      if (!has_allowed_width(inlet, spacing))
-        keys.mistake(inlet.width, fmt::format("{} particle wide; allowed: [{}, {:.6g}] (m)",
-                                              inlet.width < spacing ? "less than a" : "more than a million",
-                                              number_text(spacing), most_of_row * spacing));
+    if (keys.usable(inlet.section) && (inlet.section == InletSection::line) != (dimension == 2)) {
+      keys.mistake(inlet.section, dimension == 2
+                                      ? "has three dimensions; allowed: \"line\""
+                                      : "a line has two dimensions; allowed: \"circle\", \"annulus\", \"rectangle\"");
+    } else if (has_size(keys, inlet)) {
+      const bool is_round = inlet.section == InletSection::circle || inlet.section == InletSection::annulus;
+      if (const std::string problem = size_problem(inlet, dimension, spacing); !problem.empty())
+        keys.mistake(is_round ? inlet.radius : inlet.width, problem);
+    }
+    if (inlet.section == InletSection::rectangle && keys.usable(inlet.across, inlet.direction)) {
+      const Vector<3> direction = vector_of<3>(inlet.direction), wish = vector_of<3>(inlet.across);
+      if (!(norm(cross(direction, wish)) > 1e-6 * norm(direction) * norm(wish)))
+        keys.mistake(inlet.across, "along the flow, or 0; allowed: any other direction");
     }
     if (keys.usable(inlet.start, inlet.stop) && inlet.stop <= inlet.start)
       keys.mistake(inlet.stop, fmt::format("stops before it starts; allowed: > {} (s)", number_text(inlet.start)));
   }
   if (!keys.usable(kernel.radius, kernel.laplacian_radius)) return;
+  if (dimension == 3) return check_overlaps(keys, spacing, kernel, inlets);
   const auto block = [&](const InletEntry& entry) {
     const double margin = 0.25 * spacing;  // inlets may stand side by side
-    const Inlet<2> inlet = inlet_of(entry, spacing, kernel);
+    const Inlet<2> inlet = inlet_of<2>(entry, spacing, kernel);
     return way_of(inlet, entry.width, -inlet.rows * inlet.spacing + margin, -margin, margin);
   };
   for (std::size_t b = 0; b < inlets.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if (!is_usable(keys, spacing, inlets[a]) || !is_usable(keys, spacing, inlets[b])) continue;
+      if (!is_usable(keys, 2, spacing, inlets[a]) || !is_usable(keys, 2, spacing, inlets[b])) continue;
       const Outline one = block(inlets[a]), other = block(inlets[b]);
       const auto begin = [](const Outline& outline) { return outline.edges().front().begin; };
       if (narrowest_gap(one, other).width > 0.0 && !one.contains(begin(other)) && !other.contains(begin(one))) continue;
@@ -109,26 +293,21 @@ void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& ou
   }
 }
 
-bool is_usable(const Keys& keys, double spacing, const InletEntry& inlet) {
-  return keys.usable(inlet.center, inlet.direction, inlet.width, inlet.start, inlet.stop) &&
-         norm(vector_of<2>(inlet.direction)) > 0.0 && has_allowed_width(inlet, spacing);
+bool is_usable(const Keys& keys, int dimension, double spacing, const InletEntry& inlet) {
+  return keys.usable(inlet.center, inlet.direction, inlet.section, inlet.start, inlet.stop) &&
+         (inlet.section == InletSection::line) == (dimension == 2) && has_size(keys, inlet) &&
+         has_length(inlet.direction, dimension) && size_problem(inlet, dimension, spacing).empty();
 }
 
 double largest_speed(const InletEntry& inlet) {
   return inlet.speeds.empty() ? inlet.speed : std::ranges::max(inlet.speeds);
 }
 
-Inlet<2> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel) {
-  const Vector<2> direction = vector_of<2>(entry.direction);
-  Inlet<2> inlet;
+template <int Dim>
+Inlet<Dim> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel) {
+  Inlet<Dim> inlet;
   inlet.name = entry.name;
-  inlet.direction = 1.0 / norm(direction) * direction;
-  inlet.across = {Vector<2>{{-inlet.direction[1], inlet.direction[0]}}};
-  inlet.corner = vector_of<2>(entry.center) - 0.5 * entry.width * inlet.across[0];
-  const auto count = static_cast<int>(std::clamp(std::round(entry.width / spacing), 1.0, most_of_row));
-  const double apart = entry.width / count;
-  for (int k = 0; k < count; ++k) inlet.section.push_back({(k + 0.5) * apart});
-  inlet.spacing = spacing * spacing / apart;
+  lay_section(entry, spacing, inlet);
   inlet.rows = static_cast<int>(std::ceil(kernel.largest() * spacing / inlet.spacing)) + 1;
   for (std::size_t k = 0; k < std::min(entry.times.size(), entry.speeds.size()); ++k)
     inlet.speeds.push_back({entry.times[k], entry.speeds[k]});
@@ -140,6 +319,9 @@ Inlet<2> inlet_of(const InletEntry& entry, double spacing, const KernelSettings&
   inlet.last_row = inlet.blows ? -(inlet.rows - 0.5) * inlet.spacing : inlet.no_row();
   return inlet;
 }
+
+template Inlet<2> inlet_of(const InletEntry&, double, const KernelSettings&);
+template Inlet<3> inlet_of(const InletEntry&, double, const KernelSettings&);
 
 Outline way_of(const Inlet<2>& inlet, double width, double from, double to, double margin) {
   std::vector<std::string> mistakes;

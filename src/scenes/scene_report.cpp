@@ -146,9 +146,17 @@ std::string motion_line(const MotionEntry& entry, const std::vector<WallEntry>& 
 }
 
 std::string inlet_line(const InletEntry& entry, const MethodSettings& method) {
-  const Inlet<2> inlet = inlet_of(entry, method.particles.spacing, method.kernel);
-  std::string text = fmt::format("inlet       {}: {:.6g} m wide, {} rows of {} particles, ", entry.name, entry.width,
-                                 inlet.rows, inlet.section.size());
+  std::string size = fmt::format("{:.6g} m wide", entry.width);
+  if (entry.section == InletSection::circle) size = fmt::format("round, radius {:.6g} m", entry.radius);
+  if (entry.section == InletSection::annulus)
+    size = fmt::format("a ring, radii {:.6g} and {:.6g} m", entry.inner_radius, entry.radius);
+  if (entry.section == InletSection::rectangle) size = fmt::format("{:.6g} m x {:.6g} m", entry.width, entry.height);
+  const auto [rows, of_row] = [&] {
+    const auto counts = [](const auto& inlet) { return std::pair(inlet.rows, inlet.section.size()); };
+    return method.dimension == 2 ? counts(inlet_of<2>(entry, method.particles.spacing, method.kernel))
+                                 : counts(inlet_of<3>(entry, method.particles.spacing, method.kernel));
+  }();
+  std::string text = fmt::format("inlet       {}: {}, {} rows of {} particles, ", entry.name, size, rows, of_row);
   if (entry.speeds.empty()) {
     text += fmt::format("{:.6g} m/s", entry.speed);
   } else {

@@ -32,6 +32,10 @@ struct Inlet {
   int rows = 0;                                        ///< behind the plane
   double last_row = 0.0;  ///< distance of the hindmost row from the plane, along the flow; negative [m]
 
+  /// Of a round section around the corner, which lies in its middle: its radii [m]. Every row is turned against the
+  /// last, so that the particles of several make no thread.
+  double radius = 0.0, inner_radius = 0.0;
+
   std::string name{};
   std::vector<SpeedEntry> speeds{};  ///< linear in between, constant before and after; empty: `speed` is constant
   double start = -std::numeric_limits<double>::infinity();  ///< [s]
@@ -60,6 +64,8 @@ struct Inlet {
     const double behind = last_row / spacing + rows;  // the plane that a new row would stand on [rows]
     return behind >= -rounding && behind <= 2.0;
   }
+  /// Where a particle of the section stands in the row that begins with an id [m].
+  Vector<Dim> in_row(double distance, std::size_t k, std::int64_t first_id) const;
   double distance_past(const Vector<Dim>& position) const { return dot(position - corner, direction); }
   /// How far a position is outside the block, half a spacing around its particles [m]; 0 inside.
   double distance_from_block(const Vector<Dim>& position) const;

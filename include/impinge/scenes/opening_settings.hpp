@@ -13,14 +13,25 @@
 
 namespace impinge {
 
-/// One table of [[inlet]], in two dimensions.
+/// What an inlet's plane has of fluid: a line in two dimensions, one of the others in three.
+enum class InletSection { line, circle, annulus, rectangle };
+constexpr auto words(InletSection) {
+  return std::to_array<std::string_view>({"line", "circle", "annulus", "rectangle"});
+}
+
+/// One table of [[inlet]].
 struct InletEntry {
   static constexpr double never = 1e30;  ///< [s]
 
   std::string name;
-  Numbers center{};            ///< of the inlet's plane [m]
-  Numbers direction{};         ///< of the flow, of any length [-]
-  double width = 0.0;          ///< [m]
+  Numbers center{};     ///< of the inlet's plane [m]
+  Numbers direction{};  ///< of the flow, of any length [-]
+  InletSection section = InletSection::line;
+  double width = 0.0;          ///< of a line or a rectangle [m]
+  double height = 0.0;         ///< of a rectangle [m]
+  Numbers across{};            ///< direction of a rectangle's width, of any length [-]
+  double radius = 0.0;         ///< of a circle or an annulus [m]
+  double inner_radius = 0.0;   ///< of an annulus [m]
   double speed = 0.0;          ///< [m/s]
   std::vector<double> times;   ///< of the speeds [s]
   std::vector<double> speeds;  ///< in the place of speed: linear in between [m/s]
@@ -40,22 +51,24 @@ void declare_openings(Keys& keys, std::vector<InletEntry>& inlets, std::vector<O
 void derive_openings(const Keys& keys, int dimension, std::vector<InletEntry>& inlets,
                      std::vector<OutletEntry>& outlets);
 
-/// Notes what is wrong with each inlet by itself, and inlets that overlap. The keys of the dimension, 2, and of
-/// `spacing` [m] are usable.
-void check_inlets(Keys& keys, double spacing, const KernelSettings& kernel, const std::vector<InletEntry>& inlets);
+/// Notes what is wrong with each inlet by itself, and inlets that overlap. The keys of `dimension` and `spacing` [m]
+/// are usable.
+void check_inlets(Keys& keys, int dimension, double spacing, const KernelSettings& kernel,
+                  const std::vector<InletEntry>& inlets);
 
 /// Notes shapes without an inside and names that are used twice.
 void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& outlets);
 
 /// True where what an inlet's place depends on has allowed values that make one. `spacing`: dp [m].
-bool is_usable(const Keys& keys, double spacing, const InletEntry& inlet);
+bool is_usable(const Keys& keys, int dimension, double spacing, const InletEntry& inlet);
 
 /// The largest speed at any time [m/s].
 double largest_speed(const InletEntry& inlet);
 
 /// The inlet with its rows in place, if it blows at the start. Rows stand a little closer or farther apart than dp, so
-/// that what enters has the inlet's width.
-Inlet<2> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel);
+/// that what enters has the inlet's width or area.
+template <int Dim>
+Inlet<Dim> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel);
 
 /// The part of an inlet's way between two distances past its plane, narrower by `margin` at both sides [m].
 Outline way_of(const Inlet<2>& inlet, double width, double from, double to, double margin);
