@@ -11,6 +11,7 @@
 
 #include "impinge/config/schema.hpp"
 #include "impinge/core/errors.hpp"
+#include "impinge/geometry/mesh_file.hpp"
 #include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
@@ -95,19 +96,35 @@ void check(Keys& keys, const Case& c, const SceneInputs& inputs) {
   if (has_scene && c.dimension == 3) check_observers_in(keys, make_scene<3>(c, c), c.particles.spacing, c);
 }
 
+constexpr std::size_t largest_table = 1 << 20, largest_mesh = 200 << 20;  // [bytes]
+
+bool is_table(std::string_view name) { return name.ends_with(".csv"); }
+
+/// True for the name of a file that a case file names by a key.
+bool is_named(std::string_view name) { return is_table(name) || is_mesh_file(name); }
+
+/// A stored case with the meshes that it names.
+std::vector<NamedText> with_meshes(const NamedText& stored) {
+  std::vector<NamedText> files{stored};
+  load_named_files(files, "wall", "file", is_mesh_file, largest_mesh);
+  return files;
+}
+
 /// Names and values of the keys that a restart cannot change.
 using FixedValues = std::vector<std::pair<std::string, std::string>>;
 
 Case parse(const std::vector<NamedText>& all, const std::vector<std::string>& settings, FixedValues& fixed) {
   // The case file itself may have any name.
-  const auto first_table = std::ranges::find_if(all.begin() + 1, all.end(), is_named_table);
-  const std::vector<NamedText> files(all.begin(), first_table), tables(first_table, all.end());
+  const auto first_named =
+      std::ranges::find_if(all.begin() + 1, all.end(), [](const NamedText& file) { return is_named(file.first); });
+  const std::vector<NamedText> files(all.begin(), first_named), named(first_named, all.end());
   Case c;
   Keys keys(c.dimension);
   declare(keys, c);
   if (read_files(keys, files, settings)) {
     const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid, c.time, c.walls};
-    if (keys.usable(c.dimension)) take_motion_tables(keys, c.dimension, tables, c.motions);
+    if (keys.usable(c.dimension)) take_motion_tables(keys, c.dimension, named, c.motions);
+    for (WallEntry& wall : c.scene_walls) take_mesh(keys, named, wall);
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }
@@ -127,7 +144,8 @@ std::vector<NamedText> load_case_files(const std::string& path) {
   Keys keys(c.dimension);
   declare(keys, c);
   std::vector<NamedText> files = load_files(path, keys);
-  load_named_tables(files, "motion", "file");
+  load_named_files(files, "motion", "file", is_table, largest_table);
+  load_named_files(files, "wall", "file", is_mesh_file, largest_mesh);
   return files;
 }
 
@@ -140,13 +158,14 @@ Case parse_restart(const NamedText& stored, const std::vector<std::string>& sett
   std::string problem = text_problem(directory);
   if (problem.empty()) problem = path_problem(directory);
   if (!problem.empty()) throw InputError({fmt::format("--restart {}: {}", in_quotes(directory), problem)});
+  const std::vector<NamedText> files = with_meshes(stored);
   FixedValues before, after;
   try {
-    parse({stored}, {}, before);
+    parse(files, {}, before);
   } catch (const InputError& error) {
     throw FileError(fmt::format("cannot read {}: its case is not valid: {}", stored.first, error.what()));
   }
-  parse({stored}, settings, after);
+  parse(files, settings, after);
   std::vector<std::string> mistakes;
   for (std::size_t k = 0; k < before.size(); ++k) {
     const auto& [name, value] = before[k];
@@ -157,15 +176,17 @@ Case parse_restart(const NamedText& stored, const std::vector<std::string>& sett
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
   std::vector<std::string> all = settings;
   all.push_back("output.directory=" + in_quotes(directory));
-  Case config = parse_case({stored}, all);
+  Case config = parse_case(files, all);
   config.output.directory_place = "--restart";
   return config;
 }
 
+Case parse_stored(const NamedText& stored) { return parse_case(with_meshes(stored)); }
+
 bool are_of_one_run(const NamedText& one, const NamedText& other) {
   FixedValues here, there;
-  parse({one}, {}, here);
-  parse({other}, {}, there);
+  parse(with_meshes(one), {}, here);
+  parse(with_meshes(other), {}, there);
   const auto is_place = [](const auto& entry) { return entry.first == "output.directory"; };  // it may have moved
   std::erase_if(here, is_place);
   std::erase_if(there, is_place);

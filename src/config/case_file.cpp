@@ -361,10 +361,12 @@ void Reader::assign() {
 }
 
 /// A file's text, or the reason why it cannot be read.
-std::optional<std::string> read_text(const fs::path& path, std::string& reason) {
-  constexpr std::size_t largest = 1 << 20;
+constexpr std::size_t largest_case = 1 << 20;  // [bytes]
+
+std::optional<std::string> read_text(const fs::path& path, std::string& reason, std::size_t largest = largest_case) {
   std::error_code error;
-  std::string text(largest + 1, '\0');
+  const auto size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : largest;
+  std::string text(std::min<std::size_t>(largest, error ? largest : size) + 1, '\0');
   std::ifstream stream(path, std::ios::binary);
   const bool open = stream.is_open();
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -454,7 +456,8 @@ std::vector<NamedText> load_files(const std::string& path, Keys& keys) {
   }
 }
 
-void load_named_tables(std::vector<NamedText>& files, std::string_view list, std::string_view key) {
+void load_named_files(std::vector<NamedText>& files, std::string_view list, std::string_view key,
+                      const std::function<bool(std::string_view)>& counts, std::size_t largest) {
   std::vector<NamedText> tables;
   for (const auto& [name, text] : files) {
     try {
@@ -464,12 +467,12 @@ void load_named_tables(std::vector<NamedText>& files, std::string_view list, std
         const toml::table* entry = entries->get(k)->as_table();
         const toml::node* value = entry ? entry->get(key) : nullptr;
         if (!value || !value->is_string()) continue;
-        const fs::path path = fs::path(name).parent_path() / value->as_string()->get();
+        const fs::path path = path_of_named(name, value->as_string()->get());
         std::error_code error;
         std::string reason;
-        if (!is_named_table({path.string(), ""}) || !fs::is_regular_file(path, error)) continue;
+        if (!counts(path.string()) || !fs::is_regular_file(path, error)) continue;
         if (std::ranges::find(tables, path.string(), &NamedText::first) != tables.end()) continue;
-        if (auto content = read_text(path, reason)) tables.emplace_back(path.string(), std::move(*content));
+        if (auto content = read_text(path, reason, largest)) tables.emplace_back(path.string(), std::move(*content));
       }
     } catch (const toml::parse_error&) {
       continue;  // read_files says what is wrong
@@ -478,7 +481,9 @@ void load_named_tables(std::vector<NamedText>& files, std::string_view list, std
   files.insert(files.end(), std::make_move_iterator(tables.begin()), std::make_move_iterator(tables.end()));
 }
 
-bool is_named_table(const NamedText& file) { return file.first.ends_with(".csv"); }
+std::string path_of_named(const std::string& naming_file, const std::string& name) {
+  return (fs::path(naming_file).parent_path() / name).string();
+}
 
 bool read_files(Keys& keys, const std::vector<NamedText>& files, const std::vector<std::string>& settings) {
   Reader reader(keys);

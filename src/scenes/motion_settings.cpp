@@ -66,11 +66,6 @@ std::string take_table(std::string_view text, int dimension, MotionEntry& motion
   return motion.times.empty() ? "has no line of numbers" : "";
 }
 
-std::string directory_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  return slash == path.npos ? "" : path.substr(0, slash + 1);
-}
-
 bool has_sound_table(const MotionEntry& motion) {
   const std::size_t count = motion.times.size();
   const auto fits = [&](const auto& values) { return values.empty() || values.size() == count; };
@@ -139,7 +134,7 @@ void take_motion_tables(Keys& keys, int dimension, const std::vector<NamedText>&
   for (MotionEntry& motion : motions) {
     Key& key = keys.of(motion.file);
     if (key.given && key.usable) {
-      const std::string path = motion.file.starts_with('/') ? motion.file : directory_of(key.place.name) + motion.file;
+      const std::string path = path_of_named(key.place.name, motion.file);
       const auto found = std::ranges::find(tables, path, &NamedText::first);
       if (const std::string problem = path_problem(motion.file); !problem.empty()) {
         keys.mistake(key, problem);

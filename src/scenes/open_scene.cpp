@@ -106,6 +106,16 @@ std::vector<WallPoint<Dim>> points_at(const Scene<Dim>& scene, double time) {
   return points;
 }
 
+/// Leaves out points that stand in another wall, where none of them moves.
+void leave_out_dry(Scene<3>& scene, double spacing) {
+  constexpr double before = 0.25;  // the points, it must be wet [dp]
+  if (std::ranges::any_of(scene.walls, [](const Wall<3>& wall) { return wall.motion != nullptr; })) return;
+  const WetSpace<3> wet(scene.walls, 0.0, spacing);
+  std::erase_if(scene.wall_points, [&](const WallPoint<3>& point) {
+    return wet.depth(point.position + before * spacing * point.normal) <= 0.0;
+  });
+}
+
 }  // namespace
 
 template <int Dim>
@@ -117,6 +127,7 @@ Scene<Dim> make_open_scene(const MethodSettings& method, const SceneSettings& se
     if (auto outlet = outlet_of<Dim>(entry)) scene.outlets.push_back(std::move(*outlet));
   scene.walls = walls_of<Dim>(settings.scene_walls, settings.motions);
   scene.wall_points = wall_points(scene.walls, spacing);
+  if constexpr (Dim == 3) leave_out_dry(scene, spacing);
   scene.inlets = inlets_of<Dim>(method, settings);
   const WetSpace<Dim> wet(scene.walls, 0.0, spacing);
   const std::vector<PlacedRegion<Dim>> regions = placed<Dim>(settings.regions, spacing);

@@ -201,12 +201,13 @@ std::string inlet_problem(const SoundInlet<3>& sound, const std::vector<SoundWal
   const WetSpace<3> wet(all, time, in.spacing);
   const auto text = [](const Vector<3>& x) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", x[0], x[1], x[2]); };
   for (std::size_t k = 0; k < inlet.section.size(); ++k) {
-    for (const double past : {-inlet.rows * inlet.spacing, -0.5 * inlet.rows * inlet.spacing, 0.0})
-      if (const Vector<3> place = inlet.at(past, inlet.section[k]); !wet.contains(place))
-        return fmt::format("the inlet is cut by a wall or on the dry side of the walls, at {}", text(place));
+    const Vector<3> hindmost = inlet.at(-inlet.rows * inlet.spacing, inlet.section[k]);
+    const Vector<3> from = inlet.at(0.0, inlet.section[k]);
+    if (!wet.contains(from)) return fmt::format("the inlet is on the dry side of the walls, at {}", text(from));
     for (const Wall<3>& wall : all) {
       const Pose<3> pose = wall.motion ? (*wall.motion)(time) : Pose<3>{};
-      const Vector<3> from = inlet.at(0.0, inlet.section[k]);
+      if (wall.surface->meets(pose.origin_of(hindmost), pose.origin_of(from)))
+        return fmt::format("the inlet is cut by the wall \"{}\", before {}", wall.name, text(from));
       if (wall.surface->meets(pose.origin_of(from), pose.origin_of(from + reach * inlet.direction)))
         return fmt::format(
             "blows into the wall \"{}\", before {}; allowed: a wall farther away than {:.4g} m, or along "

@@ -14,7 +14,7 @@
 namespace impinge {
 namespace {
 
-bool closed(const WallEntry& entry) { return entry.mesh ? entry.mesh->closed() : !entry.is_open(); }
+bool closed(const WallEntry& entry) { return entry.mesh ? entry.mesh->closed() : entry.has_inside(); }
 
 /// The sides that such a shape has, beside both.
 std::array<Wet, 2> sides_of(const WallEntry& entry, int dimension) {
@@ -22,37 +22,10 @@ std::array<Wet, 2> sides_of(const WallEntry& entry, int dimension) {
   return dimension == 2 ? std::array{Wet::left, Wet::right} : std::array{Wet::front, Wet::back};
 }
 
-/// The facets of a shape in three dimensions, scaled but not turned or moved; nothing, and what is wrong with its
-/// numbers, if there is no such shape.
-std::optional<Facets> facets_of(const ShapeSettings& shape, std::vector<std::string>& mistakes) {
-  const Transform<3> scaling{.scale = shape.scale, .about = vector_of<3>(shape.about)};
-  switch (shape.shape) {
-    case ShapeType::box: {
-      const Vector<3> low = scaling(vector_of<3>(shape.low)), high = scaling(vector_of<3>(shape.high));
-      if (low[0] < high[0] && low[1] < high[1] && low[2] < high[2]) return box_facets(low, high);
-      mistakes.push_back("the low corner is not below the high corner along every axis");
-      return {};
-    }
-    case ShapeType::sphere:
-      return sphere_facets(scaling(vector_of<3>(shape.center)), shape.scale * shape.radius);
-    case ShapeType::polygon: {
-      std::vector<Vector<3>> points;
-      for (const Numbers& point : shape.points) points.push_back(scaling(vector_of<3>(point)));
-      return polygon_facets(points, mistakes);
-    }
-    case ShapeType::circle:
-    case ShapeType::arc:
-    case ShapeType::polyline:
-      break;
-  }
-  mistakes.push_back("circles, arcs and polylines have two dimensions");
-  return {};
-}
-
 void make_surface(WallEntry& wall) {
   wall.mesh_mistakes.clear();
   wall.mesh_warnings.clear();
-  std::optional<Facets> facets = facets_of(wall, wall.mesh_mistakes);
+  std::optional<Facets> facets = scaled_facets(wall, wall.mesh_mistakes);
   if (!facets) return;
   const Transform<3> placement = placement_of<3>(wall);
   for (Vector<3>& point : facets->points) point = placement(point);

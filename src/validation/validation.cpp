@@ -264,7 +264,7 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
         !are_of_one_run({paths[k], headers[k].case_text}, {result.last_path, result.last.case_text}))
       throw InputError({fmt::format("{}: {} and {} are of different cases; one directory, one run", directory, paths[k],
                                     result.last_path)});
-  result.config = parse_case({{result.last_path, result.last.case_text}});
+  result.config = parse_stored({result.last_path, result.last.case_text});
   const Case& config = result.config;
   result.target = jet_target(config);
   result.differences = differences_of(config.fluid, result.target);

@@ -152,6 +152,52 @@ high = [0.4, 0.3]
                          60);
 }
 
+// In space: a drum that turns about its axis, a ball that it carries along, and a round jet into it.
+TEST_F(Restart, ContinuesBetweenSurfacesThatMove) {
+  expect_the_same_run<3>(parse_case({{"case.toml", R"(geometry = "scene"
+dimension = 3
+particles.spacing = 0.05
+fluid.gravity = [0, 0, -9.81]
+time = {end = 1.0, dt = 4e-3}
+pressure.tolerance = 1e-12
+domain = {low = [-0.6, -0.6, -0.2], high = [0.6, 0.6, 1.4]}
+[[wall]]
+shape = "cylinder"
+begin = [0, 0, 0]
+end = [0, 0, 1.2]
+radius = 0.4
+wet = "inside"
+motion = "turn"
+[[wall]]
+shape = "sphere"
+center = [0.15, 0, 0.2]
+radius = 0.12
+motion = "turn"
+[[motion]]
+name = "turn"
+type = "harmonic"
+axis = [0, 0, 2]
+angle = 30
+frequency = 1.2
+[[inlet]]
+section = "circle"
+center = [0, 0, 0.9]
+direction = [0, 0, -1]
+radius = 0.12
+speed = 1.0
+[[outlet]]
+shape = "box"
+low = [-0.5, -0.5, 0.4]
+high = [-0.2, 0.5, 0.6]
+[[fluid.region]]
+shape = "cylinder"
+begin = [0, 0, 0]
+end = [0, 0, 0.35]
+radius = 0.4
+)"}}),
+                         24);
+}
+
 // The first inlet stops and the second starts in between; the outlet swallows a part of what falls.
 TEST_F(Restart, ContinuesInletsAndOutletsOfAScene) {
   const Case config = parse_case({{"case.toml", R"(geometry = "scene"

@@ -340,8 +340,8 @@ TEST(FluidRegion, OfTheWrongDimensionOrWithoutParticlesIsAMistake) {
              "case.toml:6: fluid.region[1].shape = \"circle\": circles and polygons have two dimensions");
   expect_one(mistakes_in(with("shape = \"polygon\"\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n"), space),
              "case.toml:6: fluid.region[1].shape = \"polygon\": circles and polygons have two dimensions");
-  expect_one(mistakes_in(with(sphere + "rotate = 5\n"), space),
-             "case.toml:9: fluid.region[1].rotate = 5.0: turns in two dimensions only; allowed: 0 (deg)");
+  expect_one(mistakes_in(with(sphere + "axis = [0, 0, 0]\n"), space),
+             "case.toml:9: fluid.region[1].axis = [0.0, 0.0, 0.0]: no direction; allowed: any vector but 0");
   expect_one(mistakes_in(with(sphere + "spin = 5\n"), space),
              "case.toml:9: fluid.region[1].spin = 5.0: a rotation in two dimensions only; allowed: 0 (rad/s)");
   expect_one(mistakes_in(with(sphere + "gradient = [1, 0, 0, 1]\n"), space),

@@ -270,7 +270,7 @@ TEST(SceneInlet, WhatIsWrongWithItIsTold) {
                  "[[inlet]]\ncenter = [0, 0, 0]\ndirection = [0, 0, 1]\nwidth = 1\nspeed = 1\n"}});
     ADD_FAILURE();
   } catch (const InputError& error) {
-    expect_mistake(error.mistakes(), "inlets of a scene exist in two dimensions; allowed: dimension = 2");
+    expect_mistake(error.mistakes(), "inlet[1].section = \"line\": a line has two dimensions; allowed: \"circle\", \"annulus\"");
   }
 }
 

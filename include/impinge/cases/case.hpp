@@ -33,18 +33,22 @@ struct Case : MethodSettings, SceneSettings, ObserverSettings {
 };
 
 /// The case file followed by the files it includes (key `include`, relative to the including file) and by the .csv
-/// files of its motions, as texts. Reads the disk; not collective. Throws InputError (missing file, include cycle) that
-/// also lists what else is wrong in the files it could read.
+/// files of its motions and walls, as texts. Reads the disk; not collective. Throws InputError (missing file, include
+/// cycle) that also lists what else is wrong in the files it could read.
 std::vector<NamedText> load_case_files(const std::string& path);
 
 /// Parses and validates; later files are defaults for earlier ones, `settings` ("key=value") override all.
 /// Touches no file. Throws InputError with every mistake, in the order of the files and their lines.
 Case parse_case(const std::vector<NamedText>& files, const std::vector<std::string>& settings = {});
 
-/// The case of a run that is restarted in `directory`: the case text of its checkpoint with `settings` over it. Touches
-/// no file. Throws InputError, also where a setting changes what a run cannot change; FileError where the text itself
-/// is no case.
+/// The case of a run that is restarted in `directory`: the case text of its checkpoint with `settings` over it. Reads
+/// the meshes that it names. Throws InputError, also where a setting changes what a run cannot change; FileError where
+/// the text itself is no case.
 Case parse_restart(const NamedText& stored, const std::vector<std::string>& settings, const std::string& directory);
+
+/// The case that a run stored with its results. Reads the meshes that it names; not collective. Throws InputError where
+/// the text is no case.
+Case parse_stored(const NamedText& stored);
 
 /// True if both texts are the case of one run: they differ in keys that a restart can change, if in any. Throws
 /// InputError where a text is no case.

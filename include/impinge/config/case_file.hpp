@@ -1,6 +1,7 @@
 #pragma once
 // Case files (TOML): reading them into declared keys, and writing the keys as text.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,12 +30,14 @@ std::string path_problem(std::string_view path);
 /// in the files it could read, by their `keys`.
 std::vector<NamedText> load_files(const std::string& path, Keys& keys);
 
-/// Appends the .csv files that the tables of a list name by a key, relative to the file that names them, behind the
-/// files. What cannot be read is left out. Reads the disk; not collective.
-void load_named_tables(std::vector<NamedText>& files, std::string_view list, std::string_view key);
+/// Appends the files that the tables of a list name by a key, relative to the file that names them, behind the files:
+/// those whose names `counts` says yes to. What cannot be read, or is larger than `largest` bytes, is left out. Reads
+/// the disk; not collective.
+void load_named_files(std::vector<NamedText>& files, std::string_view list, std::string_view key,
+                      const std::function<bool(std::string_view)>& counts, std::size_t largest);
 
-/// True for what load_named_tables appended.
-bool is_named_table(const NamedText& file);
+/// The path of a file that another names [as it is given to load_named_files].
+std::string path_of_named(const std::string& naming_file, const std::string& name);
 
 /// Reads the files and the `settings` ("key=value") into the keys' settings and checks each value by itself; mistakes
 /// stay in `keys`. Earlier files override later ones, a later setting overrides all. A list of tables is taken whole,

@@ -184,7 +184,7 @@ class Keys {
 
   /// The keys that `declare()` declares apply only where `target` is one of `values`.
   template <class Enum, class Declare>
-  void only_where(const Enum& target, std::initializer_list<Enum> values, Declare declare) {
+  void only_where(const Enum& target, const std::vector<Enum>& values, Declare declare) {
     condition_ = {.key = &of(target), .words = {}};
     for (const Enum value : values) condition_.words.push_back(static_cast<std::size_t>(value));
     declare();

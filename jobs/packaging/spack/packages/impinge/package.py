@@ -37,6 +37,7 @@ class Impinge(CMakePackage):
     depends_on("petsc@3.18: +mpi+hypre+double~complex")
     depends_on("hdf5@1.10: +mpi")
     depends_on("metis@5:")
+    depends_on("assimp@5:")
     depends_on("fmt")
     depends_on("tomlplusplus", type="build")
     depends_on("cli11", type="build")
