@@ -64,6 +64,16 @@ def case_in(block):
     return table if set(table) & set(schema()["properties"]) else None
 
 
+def cases(document):
+    """The case files that a document shows: name and text. The text before a block may name it: "as `NAME.toml`"."""
+    name = None
+    for token in tokens(document):
+        if token.type == "inline":
+            name = re.search(r"as `(\S+\.toml)`", token.content)
+        elif token.type in ("fence", "code_block") and "geometry" in (case_in(token.content) or {}):
+            yield name[1] if name else "shown.toml", token.content
+
+
 def commands(document):
     for block in blocks(document):
         for line in [] if case_in(block) else block.splitlines():
@@ -145,6 +155,11 @@ class Documents(unittest.TestCase):
                 shown = document.relative_to(ROOT).as_posix()
                 if shown.startswith(HISTORY):
                     continue
+                for number, (name, text) in enumerate(cases(document)):
+                    (folder / name).write_text(text)
+                    with self.subTest(document=shown, case=text):
+                        run(f"impinge {name} --set output.directory=shown-{number} {FEW_STEPS}")
+                    count += 1
                 for line in commands(document):
                     found = CALL.match(line)
                     if not found or PLACEHOLDER.search(line):
@@ -153,21 +168,17 @@ class Documents(unittest.TestCase):
                     with self.subTest(document=shown, line=line):
                         run(line.replace("/tmp/", f"{folder}/") + f" {FEW_STEPS}" * runs)
                     count += 1
-                for number, block in enumerate(blocks(document)):
+                for block in blocks(document):
                     if block.startswith("import "):
                         (folder / "shown.py").write_text(block)
                         with self.subTest(document=shown, block=block):
                             run("PYTHONPATH=build/release/share/impinge /usr/bin/python3 shown.py")
                     case = case_in(block)
-                    if case is None:
+                    if case is None or "geometry" in case:
                         continue
                     with self.subTest(document=shown, block=block):
-                        if "geometry" in case:
-                            (folder / "shown.toml").write_text(block)
-                            run(f"impinge shown.toml --set output.directory=shown-{number} {FEW_STEPS}")
-                        else:
-                            errors = jsonschema.Draft7Validator(schema()).iter_errors(case | {"include": "rest.toml"})
-                            self.assertEqual([error.message for error in errors], [])
+                        errors = jsonschema.Draft7Validator(schema()).iter_errors(case | {"include": "rest.toml"})
+                        self.assertEqual([error.message for error in errors], [])
                     count += 1
             self.assertGreater(count, 10)
 
