@@ -21,11 +21,19 @@ if(IMPINGE_PYTHON_DIRECTORY)
   install(FILES ${PROJECT_BINARY_DIR}/impinge.py DESTINATION ${IMPINGE_PYTHON_DIRECTORY})
 endif()
 # Documents and cases keep their places to each other, so that their links hold.
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE jobs/packaging/CITATION.cff TYPE DOC)
-install(FILES LICENSE TYPE DOC RENAME copyright)  # where Debian looks for it
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
+install(FILES jobs/packaging/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}/jobs/packaging)
 install(DIRECTORY docs input TYPE DOC)
 
 set(CPACK_PACKAGE_CONTACT "Impinge maintainers <maintainers@users.noreply.h-seed-b7950a59.example>")
+# Where Debian looks for licence and changelog.
+install(FILES LICENSE TYPE DOC RENAME copyright)
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog @ONLY
+     CONTENT "impinge (@PROJECT_VERSION@) stable; urgency=medium\n\n  * CHANGELOG.md has the changes.\n\n -- @CPACK_PACKAGE_CONTACT@  @date@\n")
+file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz PATHS ${PROJECT_BINARY_DIR}/changelog FORMAT raw
+     COMPRESSION GZip)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.gz TYPE DOC)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGE_DESCRIPTION
     "Impinge computes jets, dam breaks, sloshing and other flows with a free surface

@@ -111,6 +111,16 @@ class Documents(unittest.TestCase):
                 count += 1
         self.assertGreater(count, 20)
 
+    def test_the_version_is_everywhere_the_same(self):
+        version = subprocess.run([BIN / "impinge", "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+        self.assertIn(f"\n## {version}\n", (ROOT / "CHANGELOG.md").read_text())
+        self.assertIn(f"\nversion: {version}\n", (ROOT / "jobs/packaging/CITATION.cff").read_text())
+
+    def test_the_readme_is_short(self):
+        text = (ROOT / "README.md").read_text()
+        self.assertLessEqual(len(text.split()), 1000)
+        self.assertLessEqual(len(text.splitlines()), 95)
+
     def test_files_and_keys_that_are_named_exist(self):
         for document in DOCUMENTS:
             name = document.relative_to(ROOT).as_posix()
