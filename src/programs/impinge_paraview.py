@@ -56,7 +56,8 @@ def show(source):
     fluid = part_of(source, "type", *FLUID, "fluid")
     surface = part_of(fluid, "free_surface", 1, 1, "free surface")
     walls = part_of(source, "type", *WALL, "walls")
-    data = Fetch(fluid)
+    data = Fetch(simple.ForceTime(Input=fluid, ForcedTime=view.ViewTime))  # else that of the first time
+    simple.Delete()
     low, high = data.GetBounds()[::2], data.GetBounds()[1::2]
     spacing, is_plane = spacing_of(data), low[2] == high[2]
     preset = "Plain circle" if is_plane else "Sphere"
