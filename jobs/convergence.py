@@ -27,6 +27,7 @@ METRICS = {
     "film h1": lambda m, a: m["film_h1"] / a["film_h1"],
     "film h2": lambda m, a: m["film_h2"] / a["film_h2"],
 }
+COLOURS = ("#0072B2", "#D55E00", "#000000")  # Okabe & Ito: told apart by colour-blind readers, too
 ERRORS = {"wall": "wall pressure", "field": "pressure in a snapshot", "velocity": "velocity"}
 
 
@@ -78,7 +79,7 @@ def draw(runs, path):
                 if not points:
                     continue
                 label = f"{scheme}, {angle:g}°" + (f", slope {slope(points):.1f}" if len(points) > 1 else "")
-                axes.loglog([1 / n for n, _ in points], [e for _, e in points], line, color=f"C{k}", marker="o", label=label)
+                axes.loglog([1 / n for n, _ in points], [e for _, e in points], line, color=COLOURS[k % 3], marker="os^"[k % 3], label=label)
         ticks = sorted({key[3] for key in runs})
         axes.set_xticks([1 / n for n in ticks], [f"1/{n}" for n in ticks], minor=False)
         axes.minorticks_off()

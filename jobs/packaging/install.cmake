@@ -13,18 +13,27 @@ install(PROGRAMS ${python_programs} TYPE BIN)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ TYPE MAN)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion TYPE DATA)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/zsh/site-functions/ DESTINATION ${IMPINGE_ZSH_DIRECTORY})
-install(FILES ${schema} src/programs/impinge.py src/programs/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/impinge)
+install(FILES ${schema} src/programs/impinge.py src/programs/impinge_paraview.py src/programs/report.html
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/impinge)
 if(IMPINGE_PYTHON_DIRECTORY)
   file(RELATIVE_PATH module /${IMPINGE_PYTHON_DIRECTORY} /${CMAKE_INSTALL_DATADIR}/impinge/impinge.py)
   file(CREATE_LINK ${module} ${PROJECT_BINARY_DIR}/impinge.py SYMBOLIC)
   install(FILES ${PROJECT_BINARY_DIR}/impinge.py DESTINATION ${IMPINGE_PYTHON_DIRECTORY})
 endif()
 # Documents and cases keep their places to each other, so that their links hold.
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE jobs/packaging/CITATION.cff TYPE DOC)
-install(FILES LICENSE TYPE DOC RENAME copyright)  # where Debian looks for it
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
+install(FILES jobs/packaging/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}/jobs/packaging)
 install(DIRECTORY docs input TYPE DOC)
 
 set(CPACK_PACKAGE_CONTACT "Impinge maintainers <maintainers@users.noreply.h-seed-b7950a59.example>")
+# Where Debian looks for licence and changelog.
+install(FILES LICENSE TYPE DOC RENAME copyright)
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog @ONLY
+     CONTENT "impinge (@PROJECT_VERSION@) stable; urgency=medium\n\n  * CHANGELOG.md has the changes.\n\n -- @CPACK_PACKAGE_CONTACT@  @date@\n")
+file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz PATHS ${PROJECT_BINARY_DIR}/changelog FORMAT raw
+     COMPRESSION GZip COMPRESSION_LEVEL 9)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.gz TYPE DOC)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGE_DESCRIPTION
     "Impinge computes jets, dam breaks, sloshing and other flows with a free surface

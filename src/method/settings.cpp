@@ -1,6 +1,7 @@
 #include "impinge/method/settings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace impinge {
 namespace {
@@ -24,9 +25,18 @@ void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.time.mean_velocity, true, false);
 }
 
+/// "singular: r_e/r - 1; ...".
+std::string kernel_formulas() {
+  const auto join = [](auto... kernel) {
+    return fmt::format("{}", fmt::join(std::array{fmt::format("{}: {}", kernel.word, kernel.formula)...}, "; "));
+  };
+  return std::apply(join, Kernels{});
+}
+
 }  // namespace
 
 void declare_method(Keys& keys, MethodSettings& s) {
+  static const std::string formulas = kernel_formulas();  // keys refer to it
   keys.add("dimension", s.dimension, "dimension of space; the jet has 2", {.range = from_to(2, 3), .fixed = true});
   keys.add("scheme", s.scheme, "paper: the operators of Tang & Wan; consistent: more accurate ones", {.fixed = true});
 
@@ -46,8 +56,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("particles.spacing", s.particles.spacing, "particle spacing dp",
            {.unit = "m", .range = positive, .required = true, .fixed = true});
 
-  keys.add("kernel.type", s.kernel.type, "non_singular: r_e/(0.85 r + 0.15 r_e) - 1; singular: r_e/r - 1",
-           {.fixed = true});
+  keys.add("kernel.type", s.kernel.type, formulas, {.fixed = true});
   keys.add("kernel.radius", s.kernel.radius, "effective radius of number density, gradient and divergence",
            {.unit = "dp", .range = above_to(1, 6), .fixed = true});
   keys.add("kernel.laplacian_radius", s.kernel.laplacian_radius, "effective radius of the Laplacian",

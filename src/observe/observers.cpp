@@ -42,17 +42,27 @@ Observers<Dim>::Observers(MPI_Comm comm, const ObserverSettings& settings, const
       last_time_(report.time),
       last_step_(report.step) {}
 
+// Calls use(kind, part, measure) for every table that has columns; measure(what there is after a step) gives its row.
+template <int Dim>
+template <class Self, class Use>
+void Observers<Dim>::for_tables(Self& self, Use&& use) {
+  const auto add = [&](const char* kind, auto& part, auto measure) {
+    if (!part.empty()) use(kind, part, measure);
+  };
+  MPI_Comm comm = self.comm_;
+  add("probes", self.probes_,
+      [&](const auto& now) { return self.probes_.measure(comm, now.particles, now.report.time); });
+  add("gauges", self.gauges_, [&](const auto& now) { return self.gauges_.measure(comm, now.particles); });
+  add("sections", self.sections_, [&](const auto& now) { return self.measure_sections(now.report); });
+  add("forces", self.forces_,
+      [&](const auto& now) { return self.forces_.measure(comm, now.particles, now.report.time); });
+  add("outlets", self.outlets_, [&](const auto& now) { return self.outlets_.measure(now.outlets); });
+}
+
 template <int Dim>
 std::vector<TableLine> Observers<Dim>::headers() const {
   std::vector<TableLine> lines;
-  const auto add = [&](const char* kind, const auto& part) {
-    if (!part.empty()) lines.push_back({kind, header(part.columns())});
-  };
-  add("probes", probes_);
-  add("gauges", gauges_);
-  add("sections", sections_);
-  add("forces", forces_);
-  add("outlets", outlets_);
+  for_tables(*this, [&](const char* kind, auto& part, auto&) { lines.push_back({kind, header(part.columns())}); });
   return lines;
 }
 
@@ -79,9 +89,9 @@ bool Observers<Dim>::is_due(const StepReport& report) const {
 }
 
 template <int Dim>
-TableLine Observers<Dim>::section_row(const StepReport& report) {
+std::vector<double> Observers<Dim>::measure_sections(const StepReport& report) {
   last_step_ = report.step;
-  return {"sections", row(report, sections_.measure(report.time))};
+  return sections_.measure(report.time);
 }
 
 template <int Dim>
@@ -92,18 +102,16 @@ std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, 
   last_time_ = report.time;
   if (!due) return {};
   std::vector<TableLine> rows;
-  if (!probes_.empty()) rows.push_back({"probes", row(report, probes_.measure(comm_, particles, report.time))});
-  if (!gauges_.empty()) rows.push_back({"gauges", row(report, gauges_.measure(comm_, particles))});
-  if (!sections_.empty()) rows.push_back(section_row(report));
-  if (!forces_.empty()) rows.push_back({"forces", row(report, forces_.measure(comm_, particles, report.time))});
-  if (!outlets_.empty()) rows.push_back({"outlets", row(report, outlets_.measure(outlets))});
+  for_tables(*this, [&](const char* kind, auto&, auto measure) {
+    rows.push_back({kind, row(report, measure(Now{particles, outlets, report}))});
+  });
   return rows;
 }
 
 template <int Dim>
 std::vector<TableLine> Observers<Dim>::rows_for_restart(const StepReport& report) {
   if (sections_.empty() || last_step_ == report.step) return {};
-  return {section_row(report)};
+  return {{"sections", row(report, measure_sections(report))}};
 }
 
 template class Observers<2>;

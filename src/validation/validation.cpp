@@ -332,9 +332,9 @@ std::string to_json(const Validation& validation) {
                           {"density", target.density},
                           {"spacing", target.spacing},
                           {"width_over_spacing", target.width / target.spacing},
-                          {"scheme", config.scheme == Scheme::paper ? "paper" : "consistent"},
+                          {"scheme", word_of(config.scheme)},
                           {"gamma", config.pressure.gamma},
-                          {"kernel", config.kernel.type == KernelType::singular ? "singular" : "non_singular"},
+                          {"kernel", word_of(config.kernel.type)},
                           {"plate_begin", target.begin},
                           {"plate_end", target.end}};
   report["frame"] = {
@@ -372,10 +372,9 @@ std::string to_table(const Validation& validation) {
   const Case& config = validation.config;
   const JetTarget& target = validation.target;
   const SnapshotHeader& last = validation.last;
-  std::string table =
-      fmt::format("case       {}: {}, {:.6g} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name, word_of(target.type),
-                  target.angle * 180.0 / std::numbers::pi, target.width / target.spacing, scheme_text(config),
-                  config.kernel.type == KernelType::singular ? "singular" : "non-singular");
+  std::string table = fmt::format("case       {}: {}, {:.6g} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
+                                  word_of(target.type), target.angle * 180.0 / std::numbers::pi,
+                                  target.width / target.spacing, scheme_text(config), word_of(config.kernel.type));
   table += fmt::format("run        {} at t = {:.6g} s, step {}\n", printable(last.status), last.time, last.step);
   if (!last.message.empty()) table += fmt::format("           {}\n", printable(last.message));
   for (const std::string& difference : validation.differences)

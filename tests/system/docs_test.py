@@ -64,6 +64,16 @@ def case_in(block):
     return table if set(table) & set(schema()["properties"]) else None
 
 
+def cases(document):
+    """The case files that a document shows: name and text. The text before a block may name it: "as `NAME.toml`"."""
+    name = None
+    for token in tokens(document):
+        if token.type == "inline":
+            name = re.search(r"as `(\S+\.toml)`", token.content)
+        elif token.type in ("fence", "code_block") and "geometry" in (case_in(token.content) or {}):
+            yield name[1] if name else "shown.toml", token.content
+
+
 def commands(document):
     for block in blocks(document):
         for line in [] if case_in(block) else block.splitlines():
@@ -100,6 +110,16 @@ class Documents(unittest.TestCase):
                         self.assertIn(anchor, anchors(target))
                 count += 1
         self.assertGreater(count, 20)
+
+    def test_the_version_is_everywhere_the_same(self):
+        version = subprocess.run([BIN / "impinge", "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+        self.assertIn(f"\n## {version}\n", (ROOT / "CHANGELOG.md").read_text())
+        self.assertIn(f"\nversion: {version}\n", (ROOT / "jobs/packaging/CITATION.cff").read_text())
+
+    def test_the_readme_is_short(self):
+        text = (ROOT / "README.md").read_text()
+        self.assertLessEqual(len(text.split()), 1000)
+        self.assertLessEqual(len(text.splitlines()), 95)
 
     def test_files_and_keys_that_are_named_exist(self):
         for document in DOCUMENTS:
@@ -145,29 +165,31 @@ class Documents(unittest.TestCase):
                 shown = document.relative_to(ROOT).as_posix()
                 if shown.startswith(HISTORY):
                     continue
+                for number, (name, text) in enumerate(cases(document)):
+                    (folder / name).write_text(text)
+                    with self.subTest(document=shown, case=text):
+                        run(f"impinge {name} --set output.directory=shown-{number} {FEW_STEPS}")
+                    count += 1
                 for line in commands(document):
                     found = CALL.match(line)
                     if not found or PLACEHOLDER.search(line):
                         continue
                     runs = not found[1] and ".toml" in line and not re.search(r"--(check|plan|new|schema|describe)", line)
+                    few = re.sub(r"(--restart .*time\.end=)\S+", r"\g<1>8e-3", line.replace("/tmp/", f"{folder}/"))
                     with self.subTest(document=shown, line=line):
-                        run(line.replace("/tmp/", f"{folder}/") + f" {FEW_STEPS}" * runs)
+                        run(few + f" {FEW_STEPS}" * runs)
                     count += 1
-                for number, block in enumerate(blocks(document)):
+                for block in blocks(document):
                     if block.startswith("import "):
                         (folder / "shown.py").write_text(block)
                         with self.subTest(document=shown, block=block):
                             run("PYTHONPATH=build/release/share/impinge /usr/bin/python3 shown.py")
                     case = case_in(block)
-                    if case is None:
+                    if case is None or "geometry" in case:
                         continue
                     with self.subTest(document=shown, block=block):
-                        if "geometry" in case:
-                            (folder / "shown.toml").write_text(block)
-                            run(f"impinge shown.toml --set output.directory=shown-{number} {FEW_STEPS}")
-                        else:
-                            errors = jsonschema.Draft7Validator(schema()).iter_errors(case | {"include": "rest.toml"})
-                            self.assertEqual([error.message for error in errors], [])
+                        errors = jsonschema.Draft7Validator(schema()).iter_errors(case | {"include": "rest.toml"})
+                        self.assertEqual([error.message for error in errors], [])
                     count += 1
             self.assertGreater(count, 10)
 

@@ -56,6 +56,14 @@ class Install(unittest.TestCase):
         self.assertTrue((self.folder / "output/my/my_report.html").exists())
         self.assertEqual(list(self.prefix.rglob("__pycache__")), [])
 
+    def test_links_of_the_documents_lead_somewhere(self):
+        pages = [*self.prefix.rglob("*.md")]
+        self.assertGreater(len(pages), 20)
+        for page in pages:
+            for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+                with self.subTest(page=page.name, link=link):
+                    self.assertTrue((page.parent / link).exists())
+
     def test_each_program_has_a_page_and_completions_with_its_options(self):
         self.assertGreaterEqual(len(self.programs), 4)
         for program in self.programs:

@@ -811,6 +811,23 @@ class Run(System):
             self.assertIn(f"cannot read out/{last.name}: ", done.stderr)
             self.assertIn(reason, done.stderr)
 
+    def test_files_of_the_first_version_are_read(self):
+        old, new = self.directory / "old", self.directory / "new"
+        shutil.copytree(ROOT / "tests/system/format_1", old)
+        done = impinge("--restart", old, "--set", "time.end=0.03")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = impinge(ROOT / "tests/system/column.toml", "--set", "time.end=0.03", "--set", f"output.directory={new}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        places = []
+        for run in (old, new):
+            with h5py.File(sorted(run.glob("*.vtkhdf"))[-1]) as file:
+                places.append(file["VTKHDF/Points"][:])
+        np.testing.assert_allclose(*places, atol=1e-6)
+        with open(old / "column_history.csv", newline="") as file:
+            steps = [int(row["step"]) for row in csv.DictReader(file)]
+        self.assertEqual(steps, list(range(1, len(steps) + 1)))
+        self.assertGreater(len(steps), 10)
+
     def test_validation_refuses_what_is_no_run(self):
         done = call(BIN / "impinge-validate", self.directory)
         self.assertEqual(done.returncode, 2)

@@ -12,6 +12,12 @@ constexpr double near_radius = 2.1;
 constexpr double far_radius = 4.01;
 constexpr int reach = 2;
 
+constexpr auto all_kernels = [] {
+  std::array<KernelType, std::tuple_size_v<Kernels>> types{};
+  for (std::size_t k = 0; k < types.size(); ++k) types[k] = KernelType{static_cast<int>(k)};
+  return types;
+}();
+
 /// A cloud with its pairs.
 template <int Dim>
 struct Cloud {

@@ -44,8 +44,7 @@ class FreeSurface : public testing::Test {
       for (int z = Dim == 2 ? 0 : -5; z <= (Dim == 2 ? 0 : 5); ++z) {
         for (double d = 0.5; d < 6.0; d += 1.0) {
           const double r = std::hypot(x, z, below + d);
-          const double w = kernel == KernelType::singular ? SingularKernel::weight(r, far_radius)
-                                                          : NonSingularKernel::weight(r, far_radius);
+          const double w = with_kernel(kernel, [&](auto type) { return decltype(type)::weight(r, far_radius); });
           weight += w;
           height += w * d;
         }
@@ -61,7 +60,7 @@ class FreeSurface : public testing::Test {
 TYPED_TEST_SUITE(FreeSurface, Dimensions);
 
 TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     const Cloud<TestFixture::Dim> lattice(0.0, kernel);
     const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius);
     const auto pressure = [&](int i) {

@@ -1,9 +1,10 @@
-// The kernels against the constants of numerics.md section 1.
+// The kernels and their sums on the lattice.
 
 #include "impinge/particles/kernel.hpp"
 
 #include <gtest/gtest.h>
 
+#include "cloud_with_pairs.hpp"
 #include "impinge/core/vector.hpp"
 
 namespace impinge {
@@ -95,7 +96,7 @@ TEST(LatticeSums, OfTheCubicLattice) {
 }
 
 template <class Kernel>
-void expect_decreasing_to_zero() {
+void expect_invertible() {
   constexpr double radius = 0.042;
   for (int k = 1; k < 100; ++k)
     EXPECT_GT(Kernel::weight(0.01 * k * radius, radius), Kernel::weight(0.01 * (k + 1) * radius, radius));
@@ -103,11 +104,13 @@ void expect_decreasing_to_zero() {
   EXPECT_LT(Kernel::weight(0.999999 * radius, radius), 1e-5);
   EXPECT_EQ(Kernel::weight(radius, radius), 0.0);
   EXPECT_EQ(Kernel::weight(2.0 * radius, radius), 0.0);
+  for (int k = 1; k < 100; ++k)
+    EXPECT_NEAR(Kernel::reach(Kernel::weight(0.01 * k * radius, radius)), 1.0 - 0.01 * k, 1e-12);
 }
 
-TEST(Kernel, DecreasesToZeroAtTheEffectiveRadius) {
-  expect_decreasing_to_zero<NonSingularKernel>();
-  expect_decreasing_to_zero<SingularKernel>();
+TEST(Kernel, DecreasesToZeroAtTheEffectiveRadiusAndHasAnInverse) {
+  for (const KernelType type : all_kernels)
+    with_kernel(type, [](auto kernel) { expect_invertible<decltype(kernel)>(); });
 }
 
 TEST(Kernel, HasThePapersValues) {
@@ -122,6 +125,7 @@ TEST(Kernel, IsChosenByItsType) {
   };
   EXPECT_EQ(weight(KernelType::non_singular), NonSingularKernel::weight(1.0, 2.0));
   EXPECT_EQ(weight(KernelType::singular), SingularKernel::weight(1.0, 2.0));
+  EXPECT_EQ(words(KernelType{})[static_cast<std::size_t>(KernelType::singular)], "singular");
 }
 
 }  // namespace

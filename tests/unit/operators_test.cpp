@@ -40,7 +40,7 @@ class Operators : public testing::Test {};
 TYPED_TEST_SUITE(Operators, Dimensions);
 
 TYPED_TEST(Operators, NumberDensityIsThatOfTheFullLattice) {
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     const Cloud<TypeParam::value> lattice(0.0, kernel);
     std::vector<double> density(lattice.particles.number_density.size(), -1.0);
     number_density(lattice.near, density);
@@ -57,7 +57,7 @@ TYPED_TEST(Operators, PackingIsTheSumOfItsOwnKernelWithEitherKernel) {
     const std::span<const Vector<Dim>> position(at.particles.position);
     return packing<Dim>(at.near, position, kernel, near_radius, static_cast<int>(position.size()), at.centre());
   };
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     const Cloud<Dim> lattice(0.0, kernel);
     EXPECT_NEAR(packing_at(lattice, kernel), lattice.sums.packing, 1e-12);
     const Cloud<Dim> cloud(0.2, kernel);
@@ -82,7 +82,7 @@ TYPED_TEST(Operators, AsymmetryIsThatOfAFlatSurface) {
 
 TYPED_TEST(Operators, DivergenceIsExactOnLinearFields) {
   constexpr int Dim = TypeParam::value;
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     Cloud<Dim> lattice(0.0, kernel);
     set_linear_fields(lattice.particles);
     EXPECT_NEAR(divergence<Dim>(lattice.near, lattice.particles.position, lattice.particles.velocity,
@@ -103,7 +103,7 @@ Matrix<Dim> corrected_velocity_gradient(const Cloud<Dim>& cloud, int i) {
 
 TYPED_TEST(Operators, CorrectedOnesAreExactOnLinearFieldsOfAnyCloud) {
   constexpr int Dim = TypeParam::value;
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     Cloud<Dim> cloud(0.2, kernel);
     const Particles<Dim>& p = cloud.particles;
     set_linear_fields(cloud.particles);
@@ -185,7 +185,7 @@ TYPED_TEST(Operators, CorrectedGradientPushesFromACrowdWhereItsBaseIsLow) {
 
 TYPED_TEST(Operators, VelocityChangeIsExactOnLinearFields) {
   constexpr int Dim = TypeParam::value;
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     Cloud<Dim> cloud(0.2, kernel);
     Particles<Dim>& p = cloud.particles;
     set_linear_fields(cloud.particles);
@@ -254,7 +254,7 @@ TYPED_TEST(Operators, VelocityChangesNoFurtherThanToTheNeighbours) {
 
 TYPED_TEST(Operators, VelocityLaplacianIsExactOnQuadraticFields) {
   constexpr int Dim = TypeParam::value;
-  for (const KernelType kernel : {KernelType::non_singular, KernelType::singular}) {
+  for (const KernelType kernel : all_kernels) {
     Cloud<Dim> lattice(0.0, kernel);
     const double factor = 2.0 * Dim / (lattice.far_sums.number_density * lattice.far_sums.lambda);
     for (std::size_t i = 0; i < lattice.particles.velocity.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-// What the neighbours say of a particle: density, free surface, corrections of the operators, role in the pressure.
+// What the neighbours say of a particle: density, free surface, corrections of the operators, role in the pressure;
+// docs/method.md (4) to (8).
 
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"

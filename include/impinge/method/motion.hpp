@@ -1,5 +1,5 @@
 #pragma once
-// How velocities move particles, and what changes velocities besides the pressure.
+// How velocities move particles, docs/method.md (2), and what changes velocities besides the pressure.
 
 #include "impinge/boundaries/inlet.hpp"
 #include "impinge/method/body_force.hpp"

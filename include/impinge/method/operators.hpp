@@ -1,6 +1,7 @@
 #pragma once
-// The MPS operators: plain loops over the pair lists. They know neither MPI nor PETSc. Owned particles first, then the
-// halo, in every array; results are written for owned particles only, and are zero where the row is empty.
+// The MPS operators: plain loops over the pair lists. Numbers in brackets are equations of docs/method.md. They know
+// neither MPI nor PETSc. Owned particles first, then the halo, in every array; results are written for owned particles
+// only, and are zero where the row is empty.
 
 #include <cstdint>
 #include <optional>
@@ -11,52 +12,53 @@
 
 namespace impinge {
 
-/// Particle number density n_i = sum_{j != i} W(r_ij) [-] (Koshizuka & Oka 1996).
+/// Particle number density n_i = sum_{j != i} W(r_ij) [-] (4) (Koshizuka & Oka 1996).
 void number_density(const PairList& near, std::span<double> density);
 
-/// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-]. The lattice and clouds that a flow has stirred have
-/// the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at zero,
-/// counts the latter as up to two percent denser (docs/accuracy.md). `kernel`, `radius`: of the weights [m]; those of
-/// pairs with an index from `first_scaled` on are not those of their distances but some share of them, which the
-/// packing's weights then have, too.
+/// Packing of particle i, sum_{j != i} packing_weight(W_ij) [-] (14). The lattice and clouds that a flow has stirred
+/// have the same mean at the same volume per particle, within half a percent; number density, whose kernel peaks at
+/// zero, counts the latter as up to two percent denser (docs/notebook/scheme.md). `kernel`, `radius`: of the weights
+/// [m]; those of pairs with an index from `first_scaled` on are not those of their distances but some share of them,
+/// which the packing's weights then have, too.
 template <int Dim>
 double packing(const PairList& near, std::span<const Vector<Dim>> position, KernelType kernel, double radius,
                int first_scaled, int i);
 
-/// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-], away from the neighbours: large where they are on one side only (Zhang &
-/// Wan 2012).
+/// F_i = Dim/n0 sum (r_i - r_j)/r_ij W [-] (6), away from the neighbours: large where they are on one side only (Zhang
+/// & Wan 2012).
 template <int Dim>
 Vector<Dim> asymmetry(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 
-/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-]. That is the identity on the full lattice.
-/// L_i is zero where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface). Operators that
-/// are given zero do not correct.
+/// L_i, inverse of the moment matrix Dim/n0 sum W r_ij r_ij^T / r_ij^2 [-] (8). That is the identity on the full
+/// lattice. L_i is zero where neighbours are too few or in line (determinant below 0.15; 0.4 on a flat surface).
+/// Operators that are given zero do not correct.
 template <int Dim>
 Matrix<Dim> moment_correction(const PairList& near, std::span<const Vector<Dim>> position, double n0, int i);
 
-/// Divergence Dim/n0 sum (u_j - u_i).r_ij W / r_ij^2 [1/s] (paper eq. 5).
+/// Divergence Dim/n0 sum (u_j - u_i).r_ij W / r_ij^2 [1/s] (9) (paper eq. 5).
 template <int Dim>
 double divergence(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
                   double n0, int i);
 
-/// Corrected velocity gradient Dim/n0 sum (u_j - u_i) (L_i r_ij)^T W / r_ij^2 [1/s], row k that of component k; exact
-/// on linear velocities, and its trace is the divergence. Walls of particles let the fluid slip: of a pair with a wall,
-/// whose normal `wall_normal` has for its particles and ghosts and which is zero elsewhere, only the relative velocity
-/// along the normal counts. `wall_normal` is empty where no wall has particles.
+/// Corrected velocity gradient Dim/n0 sum (u_j - u_i) (L_i r_ij)^T W / r_ij^2 [1/s] (9), row k that of component k;
+/// exact on linear velocities, and its trace is the divergence. Walls of particles let the fluid slip: of a pair with a
+/// wall, whose normal `wall_normal` has for its particles and ghosts and which is zero elsewhere, only the relative
+/// velocity along the normal counts. `wall_normal` is empty where no wall has particles.
 template <int Dim>
 Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                               std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
                               const Matrix<Dim>& correction, double n0, int i);
 
-/// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (paper eq. 4). Ghost particles
-/// carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal only, the
-/// pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall particles.
+/// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (10) (paper eq. 4). Ghost
+/// particles carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal
+/// only, the pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall
+/// particles.
 template <int Dim>
 Vector<Dim> pressure_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                               std::span<const double> pressure, std::span<const ParticleType> type,
                               std::span<const Vector<Dim>> wall_normal, double n0, int i);
 
-/// Corrected pressure gradient Dim/n0 L_i sum (p_j - base) r_ij W / r_ij^2 [Pa/m]. With base = p_i it is exact on
+/// Corrected pressure gradient Dim/n0 L_i sum (p_j - base) r_ij W / r_ij^2 [Pa/m] (10). With base = p_i it is exact on
 /// linear pressures; the smallest pressure around (Koshizuka & Oka 1996) adds a push away from where neighbours crowd.
 template <int Dim>
 Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
@@ -75,7 +77,7 @@ std::optional<Vector<Dim>> surface_gradient(const PairList& near, std::span<cons
 /// The smallest pressure of particle i and its neighbours [Pa].
 double least_pressure(const PairList& near, std::span<const double> pressure, int i);
 
-/// Push away from the fluid neighbours that are too near, sum (distance - r_ij/dp) (r_i - r_j)/r_ij [-] over those
+/// Push away from the fluid neighbours that are too near, sum (distance - r_ij/dp) (r_i - r_j)/r_ij [-] (20) over those
 /// nearer than `distance` [dp]; equal and opposite for the two of a pair. `spacing`: dp [m].
 template <int Dim>
 Vector<Dim> repulsion(const PairList& near, std::span<const Vector<Dim>> position, std::span<const ParticleType> type,
@@ -88,9 +90,9 @@ Vector<Dim> limited_change(const PairList& near, std::span<const Vector<Dim>> ve
                            std::span<const ParticleType> type, const Vector<Dim>& change, int i);
 
 /// What the velocity differences to the neighbours have beyond those of a linear field,
-/// 1/n0 sum (u_j - u_i - (G_i + G_j) r_ij/2) W [m/s], equal and opposite for the two of a pair. On a smooth field it is
-/// of fourth order in the radius. `gradient`: G [1/s], of particles up to the last that is no image; pairs without it,
-/// or where it is zero, are left out.
+/// 1/n0 sum (u_j - u_i - (G_i + G_j) r_ij/2) W [m/s] (21), equal and opposite for the two of a pair. On a smooth field
+/// it is of fourth order in the radius. `gradient`: G [1/s], of particles up to the last that is no image; pairs
+/// without it, or where it is zero, are left out.
 template <int Dim>
 Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> position,
                        std::span<const Vector<Dim>> velocity, std::span<const Matrix<Dim>> gradient, double n0, int i);
@@ -103,16 +105,16 @@ double mean_inside(const PairList& near, std::span<const double> value, std::spa
 /// Mean of the neighbours' values by their weights; 0 without a neighbour.
 double weighted_mean(const PairList& near, std::span<const double> value, int i);
 
-/// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (paper eq. 6, with the factor Dim).
+/// Laplacian of the velocity, 2 Dim/(n0 lambda) sum (u_j - u_i) W [1/(m s)] (11) (paper eq. 6, with the factor Dim).
 /// `factor` = 2 Dim/(n0 lambda) [1/m^2].
 template <int Dim>
 Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> velocity, double factor, int i);
 
-/// Change of velocity of particle i by its collisions [m/s]: with every fluid, inlet or wall neighbour that approaches
-/// and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity becomes
-/// -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and inlet do
-/// not yield. A wall is smooth: the normal of a pair with it is the wall's. `fastest`: no particle's speed is larger
-/// [m/s].
+/// Change of velocity of particle i by its collisions [m/s] (22): with every fluid, inlet or wall neighbour that
+/// approaches and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity
+/// becomes -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and
+/// inlet do not yield. A wall is smooth: the normal of a pair with it is the wall's. `fastest`: no particle's speed is
+/// larger [m/s].
 template <int Dim>
 Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
                       std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,

@@ -17,7 +17,6 @@ enum class Outside { remove, error };
 constexpr auto words(Scheme) { return std::to_array<std::string_view>({"consistent", "paper"}); }
 constexpr auto words(WallModel) { return std::to_array<std::string_view>({"mirror", "particles"}); }
 constexpr auto words(Outside) { return std::to_array<std::string_view>({"remove", "error"}); }
-constexpr auto words(KernelType) { return std::to_array<std::string_view>({"non_singular", "singular"}); }
 
 /// An entry of the table of gravity in time.
 struct GravityEntry {
@@ -127,7 +126,7 @@ void derive_method(const Keys& keys, MethodSettings& settings, double reference_
 void check_method(Keys& keys, const MethodSettings& settings);
 
 /// Keys without which the consistent scheme does not hold, where a case has switched them off, each with what happens
-/// then (docs/accuracy.md has all pairs of keys). The paper's scheme has none.
+/// then (docs/notebook/pairs.md has all pairs of keys). The paper's scheme has none.
 std::vector<std::string> scheme_warnings(const MethodSettings& settings);
 
 }  // namespace impinge

@@ -1,5 +1,5 @@
 #pragma once
-// Particle shifting keeps the cloud regular.
+// Particle shifting keeps the cloud regular; docs/method.md (19), (20).
 
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"

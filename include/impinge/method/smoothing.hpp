@@ -1,5 +1,5 @@
 #pragma once
-// Velocities without the noise of single particles.
+// Velocities without the noise of single particles; docs/method.md (21).
 
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"

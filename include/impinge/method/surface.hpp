@@ -1,5 +1,6 @@
 #pragma once
-// Zero pressure where the free surface is: half a spacing outside the centres of the surface particles.
+// Zero pressure where the free surface is: half a spacing outside the centres of the surface particles; docs/method.md
+// (16).
 
 #include <cstdint>
 #include <span>

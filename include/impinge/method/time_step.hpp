@@ -1,5 +1,5 @@
 #pragma once
-// The length of a step.
+// The length of a step; docs/method.md (1).
 
 #include "impinge/method/settings.hpp"
 #include "impinge/method/step_report.hpp"

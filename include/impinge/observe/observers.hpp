@@ -44,8 +44,17 @@ class Observers {
   std::vector<TableLine> rows_for_restart(const StepReport& report);
 
  private:
+  /// What there is after a step.
+  struct Now {
+    const Particles<Dim>& particles;
+    const std::vector<Outlet<Dim>>& outlets;
+    const StepReport& report;
+  };
+
   bool is_due(const StepReport& report) const;
-  TableLine section_row(const StepReport& report);
+  std::vector<double> measure_sections(const StepReport& report);
+  template <class Self, class Use>
+  static void for_tables(Self& self, Use&& use);
 
   MPI_Comm comm_;
   decltype(ObserverSettings::sampling) sampling_;

@@ -1,13 +1,17 @@
 #pragma once
-// The kernels of the paper and their sums on the full lattice.
+// The kernels of the paper and their sums on the full lattice; docs/method.md (3) to (5), (14).
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <tuple>
 
 namespace impinge {
 
-/// non_singular: Zhang & Wan (paper eq. 3); singular: Koshizuka & Oka (paper eq. 9).
-enum class KernelType { non_singular, singular };
-
-/// W(r) = r_e/(0.85 r + 0.15 r_e) - 1 for r < r_e, else 0 (paper eq. 3). r and r_e in the same unit.
+/// W(r) = r_e/(0.85 r + 0.15 r_e) - 1 for r < r_e, else 0 (Zhang & Wan, paper eq. 3). r and r_e in the same unit.
 struct NonSingularKernel {
+  static constexpr std::string_view word = "non_singular";
+  static constexpr std::string_view formula = "r_e/(0.85 r + 0.15 r_e) - 1";
   static double weight(double r, double effective_radius) {
     return r < effective_radius ? effective_radius / (0.85 * r + 0.15 * effective_radius) - 1.0 : 0.0;
   }
@@ -15,8 +19,11 @@ struct NonSingularKernel {
   static double reach(double weight) { return weight / (0.85 * (1.0 + weight)); }
 };
 
-/// W(r) = r_e/r - 1 for 0 < r < r_e, else 0 (paper eq. 9). r and r_e in the same unit; infinite at r = 0.
+/// W(r) = r_e/r - 1 for 0 < r < r_e, else 0 (Koshizuka & Oka, paper eq. 9). r and r_e in the same unit; infinite at
+/// r = 0.
 struct SingularKernel {
+  static constexpr std::string_view word = "singular";
+  static constexpr std::string_view formula = "r_e/r - 1";
   static double weight(double r, double effective_radius) {
     return r < effective_radius ? effective_radius / r - 1.0 : 0.0;
   }
@@ -24,10 +31,20 @@ struct SingularKernel {
   static double reach(double weight) { return weight / (1.0 + weight); }
 };
 
+/// All kernels: their words as they stand here, in the order of the types.
+enum class KernelType { non_singular, singular };
+using Kernels = std::tuple<NonSingularKernel, SingularKernel>;
+
+constexpr auto words(KernelType) {
+  return std::apply([](auto... kernel) { return std::array{kernel.word...}; }, Kernels{});
+}
+
 /// Calls `use` with an object of the kernel's type, so that a loop over pairs is compiled for each kernel.
-template <class Use>
+template <std::size_t First = 0, class Use>
 decltype(auto) with_kernel(KernelType type, Use&& use) {
-  return type == KernelType::singular ? use(SingularKernel{}) : use(NonSingularKernel{});
+  if constexpr (First + 1 < std::tuple_size_v<Kernels>)
+    if (type != KernelType{static_cast<int>(First)}) return with_kernel<First + 1>(type, use);
+  return use(std::tuple_element_t<First, Kernels>{});
 }
 
 /// What a pair with some weight adds to the packing [-]. Its sum shall tell of the volume alone. In two dimensions the

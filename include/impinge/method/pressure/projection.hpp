@@ -1,5 +1,5 @@
 #pragma once
-// The pressure of a step, and what it does to the velocities.
+// The pressure of a step, and what it does to the velocities; docs/method.md (10), (12) to (17).
 
 #include <optional>
 #include <span>
