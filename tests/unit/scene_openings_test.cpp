@@ -371,6 +371,7 @@ TEST(SceneInlet, RoundSectionsAreAsDenseAsTheLattice) {
     for (std::size_t i = first; i < last; ++i) {
       double packing = 0.0;
       const double r = std::hypot(places[i][0], places[i][1]);
+      EXPECT_TRUE(r < radius - 0.25 && (inner_radius == 0.0 || r > inner_radius + 0.25));  // room for a wall
       for (std::size_t j = 0; j < places.size(); ++j) {
         if (j == i) continue;
         const double distance = norm(places[i] - places[j]), weight = NonSingularKernel::weight(distance, reach);
@@ -385,10 +386,10 @@ TEST(SceneInlet, RoundSectionsAreAsDenseAsTheLattice) {
       farthest = std::max(farthest, std::abs(packing - 1.0));
     }
     ASSERT_GT(inner, 0);
-    EXPECT_GT(nearest, 0.85) << radius;                 // 0.87
-    EXPECT_NEAR(sum / inner, 1.0, 1e-3) << radius;      // 0.9996 to 1.0001
-    EXPECT_LT(farthest, 0.02) << radius;                // 0.011, on the axis
-    EXPECT_NEAR(number / inner, 1.0, 0.025) << radius;  // 0.986 to 0.988
+    EXPECT_GT(nearest, 0.75) << radius;                // 0.78 to 0.87
+    EXPECT_NEAR(sum / inner, 1.0, 5e-3) << radius;     // 0.997 to 1.000
+    EXPECT_LT(farthest, 0.02) << radius;               // 0.012
+    EXPECT_NEAR(number / inner, 1.0, 0.03) << radius;  // 0.980 to 0.987
   }
 }
 
@@ -401,6 +402,25 @@ TEST(SceneInlet, ParticlesOfRoundSectionsMakeNoThreads) {
     for (std::size_t j = count; j < places.size(); ++j)
       threads += std::hypot(places[i][0] - places[j][0], places[i][1] - places[j][1]) < behind;
   EXPECT_LT(threads / static_cast<double>(count), 0.13);  // 0; by chance it would be pi 0.2^2
+}
+
+TEST(SceneInlet, InSpaceTheKeyThatIsWrongIsTold) {
+  const std::string place = "[[inlet]]\ncenter = [0, 0, 0]\ndirection = [0, 0, 1]\nspeed = 1\n";
+  const auto found = [](const std::string& text) {
+    return case_mistakes({{"case.toml",
+                           "geometry = \"scene\"\ndimension = 3\nparticles.spacing = 0.1\n"
+                           "time = {end = 1, dt = 1e-3}\n" +
+                               text}});
+  };
+  const std::string slot = place + "section = \"rectangle\"\nacross = [1, 0, 0]\n";
+  expect_mistake(found(slot + "width = 1\nheight = 0.05\n"),
+                 "case.toml:12: inlet[1].height = 0.05: less than a particle wide, 0.05 m; allowed: >= 0.1 (m)");
+  expect_mistake(found(slot + "width = 0.05\nheight = 1\n"), "case.toml:11: inlet[1].width = 0.05: less than");
+  // A thin inlet, where no particle of the wide one stands.
+  const std::string wide = place + "section = \"circle\"\nradius = 0.55\n";
+  const std::string thin = place + "section = \"circle\"\nradius = 0.05\n";
+  expect_mistake(found(wide + thin), "case.toml:12: inlet[2].center = [0.0, 0.0, 0.0]: its rows overlap those of");
+  expect_mistake(found(thin + wide), "case.toml:12: inlet[2].center = [0.0, 0.0, 0.0]: its rows overlap those of");
 }
 
 }  // namespace
