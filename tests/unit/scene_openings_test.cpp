@@ -416,11 +416,14 @@ TEST(SceneInlet, InSpaceTheKeyThatIsWrongIsTold) {
   expect_mistake(found(slot + "width = 1\nheight = 0.05\n"),
                  "case.toml:12: inlet[1].height = 0.05: less than a particle wide, 0.05 m; allowed: >= 0.1 (m)");
   expect_mistake(found(slot + "width = 0.05\nheight = 1\n"), "case.toml:11: inlet[1].width = 0.05: less than");
-  // A thin inlet, where no particle of the wide one stands.
-  const std::string wide = place + "section = \"circle\"\nradius = 0.55\n";
-  const std::string thin = place + "section = \"circle\"\nradius = 0.05\n";
-  expect_mistake(found(wide + thin), "case.toml:12: inlet[2].center = [0.0, 0.0, 0.0]: its rows overlap those of");
-  expect_mistake(found(thin + wide), "case.toml:12: inlet[2].center = [0.0, 0.0, 0.0]: its rows overlap those of");
+  // A thin inlet between particles of the wide one.
+  const auto round = [](const std::string& center, const std::string& radius) {
+    return "[[inlet]]\nsection = \"circle\"\ndirection = [0, 0, 1]\nspeed = 1\ncenter = " + center +
+           "\nradius = " + radius + "\n";
+  };
+  const std::string wide = round("[0, 0, 0]", "0.55"), thin = round("[-0.04, 0.03, 0]", "0.05");
+  for (const std::string& text : {wide + thin, thin + wide})
+    expect_mistake(found(text), "its rows overlap those of the inlet \"inlet_1\", given at case.toml:9");
 }
 
 }  // namespace
