@@ -196,9 +196,11 @@ void add_observers(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cell
     const auto point = vector_of<Dim>(gauge.point), direction = vector_of<Dim>(gauge.direction);
     cells.add(SceneItem::gauge, k + 1, {point, point + gauge.length / norm(direction) * direction});
   }
-  for (std::size_t k = 0; k < config.sections.size(); ++k)
-    cells.add(SceneItem::section, k + 1,
-              {vector_of<Dim>(config.sections[k].begin), vector_of<Dim>(config.sections[k].end)});
+  for (std::size_t k = 0; k < config.sections.size(); ++k) {
+    std::vector<Vector<Dim>> line = corners_of<Dim>(config.sections[k]);
+    if (Dim == 3) line.push_back(line.front());
+    cells.add(SceneItem::section, k + 1, line);
+  }
 }
 
 template <int Dim>
