@@ -31,9 +31,9 @@ template <int Dim>
 Vector<Dim> Inlet<Dim>::in_row(double distance, std::size_t k, std::int64_t first_id) const {
   if constexpr (Dim == 3) {
     if (radius > 0.0) {
-      // By the golden angle, so that no row stands as another near to it does.
+      // A turn that has nothing to do with the spiral's: by the golden angle, particles would stand behind each other.
       const auto rows_before = static_cast<double>(first_id / static_cast<std::int64_t>(section.size()));
-      const double angle = 2.0 * std::numbers::pi * std::fmod((std::numbers::phi - 1.0) * rows_before, 1.0);
+      const double angle = 2.0 * std::numbers::pi * std::fmod(std::numbers::sqrt2 * rows_before, 1.0);
       const double cosine = std::cos(angle), sine = std::sin(angle);
       const auto [x, y] = section[k];
       return at(distance, {cosine * x - sine * y, sine * x + cosine * y});

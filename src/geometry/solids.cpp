@@ -9,6 +9,15 @@ namespace {
 
 constexpr double on_surface = 1e-9;  // distance that counts as none, in lengths of the shape
 
+/// A polygon that is symmetric about its axis: as wide as the radii at height 0 and at the other.
+Outline profile_of(double height, double radius, double end_radius) {
+  std::vector<Vector<2>> corners{{{radius, 0.0}}, {{end_radius, height}}};
+  if (end_radius > 0.0) corners.push_back({{-end_radius, height}});
+  if (radius > 0.0) corners.push_back({{-radius, 0.0}});
+  std::vector<std::string> mistakes;
+  return make_polygon(std::move(corners), mistakes).value();
+}
+
 }  // namespace
 
 Vector<3> Sphere::normal(const Vector<3>& point) const {
@@ -69,5 +78,49 @@ Box<3> Block::bounds() const {
 }
 
 double Block::volume() const { return 8.0 * half_[0] * half_[1] * half_[2]; }
+
+Frustum::Frustum(const Vector<3>& begin, const Vector<3>& end, double radius, double end_radius)
+    : begin_(begin),
+      end_(end),
+      axis_(1.0 / norm(end - begin) * (end - begin)),
+      radius_(radius),
+      end_radius_(end_radius),
+      profile_(profile_of(norm(end - begin), radius, end_radius)) {}
+
+Vector<2> Frustum::in_profile(const Vector<3>& point) const {
+  const Vector<3> offset = point - begin_;
+  const double along = dot(offset, axis_);
+  return {{norm(offset - along * axis_), along}};
+}
+
+Vector<3> Frustum::normal(const Vector<3>& point) const {
+  const auto [across, along] = profile_.normal(in_profile(point)).component;
+  const Vector<3> offset = point - begin_;
+  Vector<3> outward = offset - dot(offset, axis_) * axis_;
+  if (!(norm(outward) > on_surface * (radius_ + end_radius_))) {  // on the axis, any direction
+    int least = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::abs(axis_[k]) < std::abs(axis_[least])) least = k;
+    Vector<3> other;
+    other[least] = 1.0;
+    outward = cross(axis_, other);
+  }
+  return across / norm(outward) * outward + along * axis_;
+}
+
+Box<3> Frustum::bounds() const {
+  Box<3> box;
+  for (int k = 0; k < 3; ++k) {
+    const double share = std::sqrt(std::max(0.0, 1.0 - axis_[k] * axis_[k]));  // of a disc's radius
+    box.low[k] = std::min(begin_[k] - share * radius_, end_[k] - share * end_radius_);
+    box.high[k] = std::max(begin_[k] + share * radius_, end_[k] + share * end_radius_);
+  }
+  return box;
+}
+
+double Frustum::volume() const {
+  return std::numbers::pi / 3.0 * norm(end_ - begin_) *
+         (radius_ * radius_ + radius_ * end_radius_ + end_radius_ * end_radius_);
+}
 
 }  // namespace impinge

@@ -23,8 +23,9 @@ std::vector<std::string> observer_lines(const ObserverSettings& settings, int di
     lines.push_back(fmt::format("gauge       {}: from {} m on {:.6g} m along {}", gauge.name, text(gauge.point),
                                 gauge.length, text(gauge.direction)));
   for (const SectionSettings& section : settings.sections)
-    lines.push_back(
-        fmt::format("section     {}: from {} to {} m", section.name, text(section.begin), text(section.end)));
+    lines.push_back(fmt::format("section     {}: from {} to {} m{}", section.name, text(section.begin),
+                                text(section.end),
+                                dimension == 3 ? fmt::format(", side {} m", text(section.side)) : ""));
   return lines;
 }
 

@@ -37,15 +37,25 @@ Sections<Dim>::Sections(MPI_Comm comm, const std::vector<SectionSettings>& setti
                         double spacing, const Particles<Dim>& particles, double time)
     : comm_(comm), spacing_(spacing), offsets_(scene), since_(time) {
   for (const SectionSettings& one : settings) {
-    const Vector<Dim> begin = vector_of<Dim>(one.begin), end = vector_of<Dim>(one.end);
-    Section section{.name = one.name, .middle = 0.5 * (begin + end), .along = {}, .across = {}};
-    section.length = norm(end - begin);
-    section.along = 1.0 / section.length * (end - begin);
-    section.across[0] = section.along[1];
-    section.across[1] = -section.along[0];
+    const Vector<Dim> begin = vector_of<Dim>(one.begin), end = vector_of<Dim>(one.end), way = end - begin;
+    Section section{.name = one.name, .middle = 0.5 * (begin + end), .across = {}};
+    if constexpr (Dim == 2) {
+      section.across = -1.0 / norm(way) * turned_left(way);
+      section.inverse = {1.0 / dot(way, way) * way};
+    } else {
+      const Vector<3> side = vector_of<3>(one.side), area = cross(way, side);
+      section.middle += 0.5 * side;
+      section.across = 1.0 / norm(area) * area;
+      section.inverse = {1.0 / dot(area, area) * cross(side, area), 1.0 / dot(area, area) * cross(area, way)};
+    }
     sections_.push_back(section);
   }
   remember(particles);
+}
+
+template <int Dim>
+double Sections<Dim>::volume() const {
+  return Dim == 2 ? spacing_ * spacing_ : spacing_ * spacing_ * spacing_;
 }
 
 template <int Dim>
@@ -53,7 +63,9 @@ bool Sections<Dim>::is_near(const Vector<Dim>& position, double width) const {
   return std::ranges::any_of(sections_, [&](const Section& section) {
     const Vector<Dim> offset = offsets_(section.middle, position);
     return std::abs(dot(offset, section.across)) < width * spacing_ &&
-           std::abs(dot(offset, section.along)) < 0.5 * section.length + width * spacing_;
+           std::ranges::all_of(section.inverse, [&](const Vector<Dim>& along) {
+             return std::abs(dot(offset, along)) < 0.5 + width * spacing_ * norm(along);
+           });
   });
 }
 
@@ -69,8 +81,8 @@ template <int Dim>
 std::vector<std::string> Sections<Dim>::columns() const {
   std::vector<std::string> columns;
   for (const Section& section : sections_) {
-    columns.push_back(fmt::format("{} [m^2/s]", section.name));
-    columns.push_back(fmt::format("total_{} [m^2]", section.name));
+    columns.push_back(fmt::format("{} [m^{}/s]", section.name, Dim));
+    columns.push_back(fmt::format("total_{} [m^{}]", section.name, Dim));
   }
   return columns;
 }
@@ -78,8 +90,7 @@ std::vector<std::string> Sections<Dim>::columns() const {
 template <int Dim>
 void Sections<Dim>::go_on(double time, const std::vector<double>& values) {
   since_ = time;
-  for (std::size_t k = 0; k < sections_.size(); ++k)
-    sections_[k].total = std::llround(values[2 * k + 1] / (spacing_ * spacing_));
+  for (std::size_t k = 0; k < sections_.size(); ++k) sections_[k].total = std::llround(values[2 * k + 1] / volume());
 }
 
 template <int Dim>
@@ -107,8 +118,11 @@ void Sections<Dim>::count(const Particles<Dim>& particles) {
       const double from = dot(begin, section.across), to = dot(end, section.across);
       if ((from < 0.0) == (to < 0.0)) continue;
       const double share = from / (from - to);
-      const double at = dot(begin, section.along) + share * dot(way, section.along);
-      if (at < -0.5 * section.length || at >= 0.5 * section.length) continue;
+      if (!std::ranges::all_of(section.inverse, [&](const Vector<Dim>& along) {
+            const double at = dot(begin, along) + share * dot(way, along);
+            return at >= -0.5 && at < 0.5;
+          }))
+        continue;
       section.crossings += to < 0.0 ? -1 : 1;
     }
   }
@@ -120,12 +134,11 @@ std::vector<double> Sections<Dim>::measure(double time) {
   std::vector<std::int64_t> crossings;
   for (Section& section : sections_) crossings.push_back(std::exchange(section.crossings, 0));
   MPI_Allreduce(MPI_IN_PLACE, crossings.data(), static_cast<int>(crossings.size()), MPI_INT64_T, MPI_SUM, comm_);
-  const double volume = spacing_ * spacing_;
   std::vector<double> values;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
     sections_[k].total += crossings[k];
-    values.push_back(time > since_ ? static_cast<double>(crossings[k]) * volume / (time - since_) : 0.0);
-    values.push_back(static_cast<double>(sections_[k].total) * volume);
+    values.push_back(time > since_ ? static_cast<double>(crossings[k]) * volume() / (time - since_) : 0.0);
+    values.push_back(static_cast<double>(sections_[k].total) * volume());
   }
   since_ = time;
   return values;

@@ -102,13 +102,16 @@ void declare_observers(Keys& keys, ObserverSettings& settings) {
                         {.fallback = "up, along the last axis"});
               inner.add("length", gauge.length, "of the line", {.unit = "m", .range = positive, .required = true});
             });
-  keys.list("section", settings.sections,
-            "discharge through a line in 2D, from the left to the right of the way from its begin to its end",
-            {.fixed = true}, [](Keys& inner, SectionSettings& section) {
-              inner.add("name", section.name, "name in the table's header", {.fallback = "section_<number>"});
-              inner.add("begin", section.begin, "one end", {.unit = "m", .required = true});
-              inner.add("end", section.end, "the other end", {.unit = "m", .required = true});
-            });
+  keys.list(
+      "section", settings.sections,
+      "discharge through a line, from the left to the right of the way from its begin to its end; in 3D through a "
+      "parallelogram, to the side that the way and then its side turn to like a right hand's fingers to the thumb",
+      {.fixed = true}, [](Keys& inner, SectionSettings& section) {
+        inner.add("name", section.name, "name in the table's header", {.fallback = "section_<number>"});
+        inner.add("begin", section.begin, "one end", {.unit = "m", .required = true});
+        inner.add("end", section.end, "the other end", {.unit = "m", .required = true});
+        inner.add("side", section.side, "3D: the other side of the parallelogram, as a vector", {.unit = "m"});
+      });
 }
 
 void derive_observers(const Keys& keys, int dimension, ObserverSettings& settings) {
@@ -136,11 +139,14 @@ void check_observers(Keys& keys, int dimension, const ObserverSettings& settings
     if (keys.usable(gauge.direction) && !is_length(length_of(gauge.direction, dimension)))
       keys.mistake(gauge.direction, no_direction);
   for (const SectionSettings& section : settings.sections) {
-    if (!keys.usable(section.begin, section.end)) continue;
-    if (dimension != 2) {
-      keys.mistake(section.begin, "a section is a line in two dimensions; allowed: none in three");
-    } else if (!is_length(length_of({section.end[0] - section.begin[0], section.end[1] - section.begin[1]}, 2))) {
+    if (!keys.usable(section.begin, section.end, section.side)) continue;
+    const Vector<3> side = vector_of<3>(section.side), way = vector_of<3>(section.end) - vector_of<3>(section.begin);
+    if (!is_length(norm(way))) {
       keys.mistake(section.end, "the line has no length; allowed: another point than its begin");
+    } else if (dimension == 3 && !(norm(cross(way, side)) > 1e-6 * norm(way) * norm(side))) {
+      keys.mistake(section.side, "0, or along the line from begin to end; allowed: any other vector (m)");
+    } else if (dimension == 2 && norm(side) > 0.0) {
+      keys.mistake(section.side, "a section is a line in two dimensions; allowed: 0 (m)");
     }
   }
 }
@@ -179,6 +185,11 @@ void check_observers_in(Keys& keys, const Scene<Dim>& scene, double spacing, con
     if (!keys.usable(section.begin, section.end)) continue;
     for (const Numbers* end : {&section.begin, &section.end})
       if (!is_in(scene.bounds, vector_of<Dim>(*end), tolerance)) keys.mistake(*end, "outside the scene; " + inside);
+    const std::vector<Vector<Dim>> corners = corners_of<Dim>(section);
+    if (keys.usable(section.side) && std::any_of(corners.begin() + 2, corners.end(), [&](const Vector<Dim>& corner) {
+          return !is_in(scene.bounds, corner, tolerance);
+        }))
+      keys.mistake(section.side, "ends outside the scene; " + inside);
   }
 }
 

@@ -35,9 +35,10 @@ PANELS = {
                 ("plate_force", None, "force on plate or floor")],
     "probes": [("p_", "Pa", "pressure"), ("ux_", "m/s", "u_x"), ("uy_", "m/s", "u_y"), ("uz_", "m/s", "u_z")],
     "gauges": [("", "m", "level")],
-    "sections": [("", "m^2/s", "discharge"), ("total_", "m^2", "total")],
+    "sections": [("", "m^2/s", "discharge"), ("total_", "m^2", "total"), ("", "m^3/s", "discharge"), ("total_", "m^3", "total")],
     "outlets": [("", "1", "particles")],
-    "forces": [("fx_", "N/m", "F_x"), ("fy_", "N/m", "F_y"), ("torque_", "N", "torque")],
+    "forces": [("fx_", "N/m", "F_x"), ("fy_", "N/m", "F_y"), ("torque_", "N", "torque"),
+               ("fx_", "N", "F_x"), ("fy_", "N", "F_y"), ("fz_", "N", "F_z"), ("torque_", "N m", "torque")],
 }
 
 FLUID, INLET, WALL, GHOST = range(4)  # the values of Snapshot.type
@@ -113,8 +114,9 @@ def smooth_discharge(table):
     begin, end = np.clip(time - window / 2, time[:1], time[-1:]), np.clip(time + window / 2, time[:1], time[-1:])
     smooth = {}
     for name, values in table.items():
-        if table.units[name] == "m^2/s" and window > 0:
-            total = next(table[other] for other in (f"total_{name}", f"total_{name} [m^2]") if table.units.get(other) == "m^2")
+        if table.units[name] in ("m^2/s", "m^3/s") and window > 0:
+            unit = table.units[name].removesuffix("/s")
+            total = next(table[other] for other in (f"total_{name}", f"total_{name} [{unit}]") if table.units.get(other) == unit)
             values = (np.interp(end, time, total) - np.interp(begin, time, total)) / (end - begin)
         smooth[name] = values
     return smooth, window
@@ -129,7 +131,7 @@ def panels(run):
             continue
         for prefix, unit, label in rows:
             columns, note = table, ""
-            if unit == "m^2/s":
+            if unit in ("m^2/s", "m^3/s"):
                 columns, window = smooth_discharge(table)
                 note = f", over {window:.2g} s"
             names = [name for name in table if name not in ("step", "t") and name.startswith(prefix)]
@@ -310,6 +312,9 @@ class Run:
                     points = [item["point"], list(np.array(item["point"]) + item["length"] * way)]
                 elif kind == "section":
                     points = [item["begin"], item["end"]]
+                    if len(item["begin"]) == 3:
+                        begin, end, side = (np.array(item[key]) for key in ("begin", "end", "side"))
+                        points = [point.tolist() for point in (begin, end, end + side, begin + side, begin)]
                 else:
                     continue
                 marks.append({"kind": kind, "name": item["name"], "points": points})

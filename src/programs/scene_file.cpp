@@ -41,19 +41,19 @@ struct Cells {
   }
 };
 
-/// The edges of a box; in two dimensions as one closed line.
+/// The edges of a box that is placed by a transform; in two dimensions as one closed line.
 template <int Dim>
-void add_box(SceneItem item, std::size_t number, const Box<Dim>& box, Cells<Dim>& cells,
-             const Vector<Dim>& normal = {}) {
+void add_box(SceneItem item, std::size_t number, const Box<Dim>& box, Cells<Dim>& cells, const Vector<Dim>& normal = {},
+             const Transform<Dim>& place = {}) {
   if constexpr (Dim == 2) {
     std::vector<Vector<2>> line;
-    for (const int k : {0, 1, 3, 2, 0}) line.push_back(box.corner(k));
+    for (const int k : {0, 1, 3, 2, 0}) line.push_back(place(box.corner(k)));
     cells.add(item, number, line, normal);
   } else {
     for (int k = 0; k < 8; ++k)
       for (int axis = 0; axis < 3; ++axis)
         if (const int next = k | (1 << axis); next != k)
-          cells.add(item, number, {box.corner(k), box.corner(next)}, normal);
+          cells.add(item, number, {place(box.corner(k)), place(box.corner(next))}, normal);
   }
 }
 
@@ -133,15 +133,40 @@ void add_paths(const Case& config, const std::vector<Wall<Dim>>& walls, Cells<Di
   }
 }
 
-void add_inlets(const Scene<2>& scene, double spacing, Cells<2>& cells) {
-  for (std::size_t k = 0; k < scene.inlets.size(); ++k) {
-    const Inlet<2>& inlet = scene.inlets[k];
-    const auto [low, high] = std::ranges::minmax(inlet.section, {}, [](const auto& x) { return x[0]; });
-    const auto count = static_cast<double>(inlet.section.size());
-    const double half = 0.5 * (count > 1.0 ? (high[0] - low[0]) / (count - 1.0) : spacing);  // of a particle
-    cells.add(SceneItem::inlet, k + 1, {inlet.at(0.0, {low[0] - half}), inlet.at(0.0, {high[0] + half})},
-              inlet.direction);
+/// The lines around an inlet's section.
+std::vector<std::vector<Vector<2>>> rims_of(const Inlet<2>& inlet, double spacing) {
+  const auto [low, high] = std::ranges::minmax(inlet.section, {}, [](const auto& x) { return x[0]; });
+  const auto count = static_cast<double>(inlet.section.size());
+  const double half = 0.5 * (count > 1.0 ? (high[0] - low[0]) / (count - 1.0) : spacing);  // of a particle
+  return {{inlet.at(0.0, {low[0] - half}), inlet.at(0.0, {high[0] + half})}};
+}
+std::vector<std::vector<Vector<3>>> rims_of(const Inlet<3>& inlet, double) {
+  constexpr int pieces = 72;  // of a circle
+  std::vector<std::vector<Vector<3>>> rims;
+  for (const double radius : {inlet.radius, inlet.inner_radius}) {
+    if (radius == 0.0) continue;
+    std::vector<Vector<3>>& rim = rims.emplace_back();
+    for (int k = 0; k <= pieces; ++k) {
+      const auto [cosine, sine] = cosine_and_sine(k * 360.0 / pieces);
+      rim.push_back(inlet.at(0.0, {radius * cosine, radius * sine}));
+    }
   }
+  if (rims.empty()) {
+    // The first and the last particle of a rectangle are as far from corners that are opposite each other.
+    const auto [a0, b0] = inlet.section.front();
+    const auto [a1, b1] = inlet.section.back();
+    const double a = a0 + a1, b = b0 + b1;
+    rims.push_back({inlet.at(0.0, {0.0, 0.0}), inlet.at(0.0, {a, 0.0}), inlet.at(0.0, {a, b}), inlet.at(0.0, {0.0, b}),
+                    inlet.at(0.0, {0.0, 0.0})});
+  }
+  return rims;
+}
+
+template <int Dim>
+void add_inlets(const Scene<Dim>& scene, double spacing, Cells<Dim>& cells) {
+  for (std::size_t k = 0; k < scene.inlets.size(); ++k)
+    for (const std::vector<Vector<Dim>>& rim : rims_of(scene.inlets[k], spacing))
+      cells.add(SceneItem::inlet, k + 1, rim, scene.inlets[k].direction);
 }
 
 template <int Dim>
@@ -151,9 +176,7 @@ void add_outlets(const std::vector<OutletEntry>& outlets, Cells<Dim>& cells) {
     if constexpr (Dim == 2) {
       if (const auto outline = outline_of(outlets[k], mistakes)) cells.add(SceneItem::outlet, k + 1, line_of(*outline));
     } else if (const auto shape = scaled_shape<3>(outlets[k], mistakes)) {
-      const Transform<3> placement = placement_of<3>(outlets[k]);
-      const Box<3> box = shape->bounds();
-      add_box(SceneItem::outlet, k + 1, {placement(box.low), placement(box.high)}, cells);
+      add_box(SceneItem::outlet, k + 1, shape->bounds(), cells, {}, placement_of<3>(outlets[k]));
     }
   }
 }
@@ -173,9 +196,11 @@ void add_observers(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cell
     const auto point = vector_of<Dim>(gauge.point), direction = vector_of<Dim>(gauge.direction);
     cells.add(SceneItem::gauge, k + 1, {point, point + gauge.length / norm(direction) * direction});
   }
-  for (std::size_t k = 0; k < config.sections.size(); ++k)
-    cells.add(SceneItem::section, k + 1,
-              {vector_of<Dim>(config.sections[k].begin), vector_of<Dim>(config.sections[k].end)});
+  for (std::size_t k = 0; k < config.sections.size(); ++k) {
+    std::vector<Vector<Dim>> line = corners_of<Dim>(config.sections[k]);
+    if (Dim == 3) line.push_back(line.front());
+    cells.add(SceneItem::section, k + 1, line);
+  }
 }
 
 template <int Dim>
@@ -183,7 +208,7 @@ void add_lines(const Case& config, Cells<Dim>& cells) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
   add_walls(scene.walls, cells);
   add_paths(config, scene.walls, cells);
-  if constexpr (Dim == 2) add_inlets(scene, config.particles.spacing, cells);
+  add_inlets(scene, config.particles.spacing, cells);
   add_outlets(config.outlets, cells);
   add_observers(config, scene, cells);
   for (std::size_t k = 0; k < config.damping.size(); ++k)

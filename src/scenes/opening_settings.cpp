@@ -45,49 +45,66 @@ std::string size_problem(const InletEntry& inlet, int dimension, double spacing)
   return "";
 }
 
-/// Places that fill a ring evenly: a spiral (Vogel 1979), then pushed apart.
-std::vector<std::array<double, 2>> places_in_ring(double radius, double inner_radius, std::size_t count) {
-  constexpr int passes = 60;
-  constexpr double reach = 1.6, way = 0.12;  // [mean distance]
-  const double pi = std::numbers::pi, square = inner_radius * inner_radius;
-  const double area = radius * radius - square, apart = std::sqrt(pi * area / static_cast<double>(count));
-  std::vector<Vector<2>> places;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double r = std::sqrt(square + area * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
-    const double angle = 2.0 * pi * std::fmod((std::numbers::phi - 1.0) * static_cast<double>(k), 1.0);
-    places.push_back({{r * std::cos(angle), r * std::sin(angle)}});
+/// Pushes the places next to a rim apart from each other and from their images beyond it: a wall may stand there.
+/// `apart`: their mean distance.
+void smooth_rims(double radius, double inner_radius, double apart, std::vector<Vector<2>>& places) {
+  constexpr int passes = 40;
+  constexpr double layer = 1.5, reach = 1.6, way = 0.12, nearest = 0.3;  // places that move, and how [apart]
+  const double least = inner_radius > 0.0 ? inner_radius + nearest * apart : 0.0;
+  const auto is_near_rim = [&](const Vector<2>& place, double range) {
+    const double r = norm(place);
+    return radius - r < range * apart || (inner_radius > 0.0 && r - inner_radius < range * apart);
+  };
+  std::vector<std::size_t> moving, all;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (is_near_rim(places[k], layer)) moving.push_back(k);
+    if (is_near_rim(places[k], layer + 2.0 * reach)) all.push_back(k);
   }
-  for (int pass = 0; pass < passes; ++pass) {
-    std::map<std::pair<int, int>, std::vector<std::size_t>> cells;
+  const auto cell_of = [&](const Vector<2>& place) {
     const auto cell = [&](double x) { return static_cast<int>(std::floor(x / (reach * apart))); };
-    for (std::size_t k = 0; k < count; ++k) cells[{cell(places[k][0]), cell(places[k][1])}].push_back(k);
+    return std::pair(cell(place[0]), cell(place[1]));
+  };
+  for (int pass = 0; pass < passes; ++pass) {
+    std::map<std::pair<int, int>, std::vector<Vector<2>>> others;
+    for (const std::size_t k : all) {
+      const double r = norm(places[k]);
+      const auto add = [&](double factor) { others[cell_of(factor * places[k])].push_back(factor * places[k]); };
+      add(1.0);
+      if (r > 0.0 && radius - r < reach * apart) add((2.0 * radius - r) / r);
+      if (inner_radius > 0.0 && r - inner_radius < reach * apart) add((2.0 * inner_radius - r) / r);
+    }
     std::vector<Vector<2>> next = places;
-    for (std::size_t k = 0; k < count; ++k) {
-      Vector<2> push;
-      const auto add = [&](const Vector<2>& other) {
-        const Vector<2> offset = places[k] - other;
-        const double distance = norm(offset) / apart;
-        if (distance > 1e-9 && distance < reach) push += (1.0 - distance / reach) / distance * offset;
-      };
-      for (int a = -1; a <= 1; ++a)
-        for (int b = -1; b <= 1; ++b)
-          if (const auto found = cells.find({cell(places[k][0]) + a, cell(places[k][1]) + b}); found != cells.end())
-            for (const std::size_t other : found->second) {
-              if (other != k) add(places[other]);
-              // Its images beyond the rims.
-              const double r = norm(places[other]);
-              if (radius - r < reach * apart) add((2.0 * radius - r) / r * places[other]);
-              if (inner_radius > 0.0 && r - inner_radius < reach * apart)
-                add((2.0 * inner_radius - r) / r * places[other]);
-            }
-      next[k] += way * push;
-      const double r = norm(next[k]), least = inner_radius > 0.0 ? inner_radius + 0.3 * apart : 0.0;
-      if (const double kept = std::clamp(r, least, radius - 0.3 * apart); kept != r) next[k] *= kept / r;
+    for (const std::size_t k : moving) {
+      const auto [column, row] = cell_of(places[k]);
+      for (int a = column - 1; a <= column + 1; ++a) {
+        for (int b = row - 1; b <= row + 1; ++b) {
+          for (const Vector<2>& other : others[{a, b}]) {
+            const Vector<2> offset = places[k] - other;
+            const double distance = norm(offset) / apart;
+            if (distance > 0.0 && distance < reach) next[k] += way * (1.0 - distance / reach) / distance * offset;
+          }
+        }
+      }
+      const double r = norm(next[k]);
+      if (const double kept = std::clamp(r, least, radius - nearest * apart); kept != r) next[k] *= kept / r;
     }
     places = next;
   }
+}
+
+/// Places that fill a ring evenly: a spiral by the golden angle (Vogel, Math. Biosci. 44, 1979). To push those far from
+/// the rims apart, too, would make rings of more and of less density.
+std::vector<std::array<double, 2>> places_in_ring(double radius, double inner_radius, std::size_t count) {
+  const double square = inner_radius * inner_radius, area = radius * radius - square;
+  std::vector<Vector<2>> places;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double r = std::sqrt(square + area * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+    const double angle = 2.0 * std::numbers::pi * std::fmod(std::numbers::phi * static_cast<double>(k), 1.0);
+    places.push_back({{r * std::cos(angle), r * std::sin(angle)}});
+  }
+  smooth_rims(radius, inner_radius, std::sqrt(std::numbers::pi * area / static_cast<double>(count)), places);
   std::vector<std::array<double, 2>> result;
-  for (const Vector<2>& place : places) result.push_back({place[0], place[1]});
+  for (const Vector<2>& place : places) result.push_back(place.component);
   return result;
 }
 
@@ -175,17 +192,21 @@ bool has_size(const Keys& keys, const InletEntry& inlet) {
   return false;
 }
 
-/// Notes inlets in space whose rows stand nearer to each other than half a spacing.
+/// True where particles of an inlet's rows stand in the block of another.
+bool has_particles_in(const Inlet<3>& block, const Inlet<3>& inlet) {
+  for (int row = 0; row < inlet.rows; ++row)
+    for (std::size_t k = 0; k < inlet.section.size(); ++k)
+      if (block.distance_from_block(inlet.in_row(-(row + 0.5) * inlet.spacing, k, 0)) <= 0.0) return true;
+  return false;
+}
+
+/// Notes inlets in space of which one's rows stand in the other's block.
 void check_overlaps(Keys& keys, double spacing, const KernelSettings& kernel, const std::vector<InletEntry>& inlets) {
   for (std::size_t b = 0; b < inlets.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       if (!is_usable(keys, 3, spacing, inlets[a]) || !is_usable(keys, 3, spacing, inlets[b])) continue;
       const Inlet<3> one = inlet_of<3>(inlets[a], spacing, kernel), other = inlet_of<3>(inlets[b], spacing, kernel);
-      bool overlap = false;
-      for (int row = 0; row < other.rows; ++row)
-        for (std::size_t k = 0; k < other.section.size(); ++k)
-          overlap |= one.distance_from_block(other.in_row(-(row + 0.5) * other.spacing, k, 0)) <= 0.0;
-      if (overlap)
+      if (has_particles_in(one, other) || has_particles_in(other, one))
         keys.mistake(inlets[b].center, fmt::format("its rows overlap those of the inlet \"{}\", given at {}",
                                                    inlets[a].name, keys.place(inlets[a].center)));
     }
@@ -251,8 +272,9 @@ void check_inlets(Keys& keys, int dimension, double spacing, const KernelSetting
                                       : "a line has two dimensions; allowed: \"circle\", \"annulus\", \"rectangle\"");
     } else if (has_size(keys, inlet)) {
       const bool is_round = inlet.section == InletSection::circle || inlet.section == InletSection::annulus;
+      const bool is_low = inlet.section == InletSection::rectangle && inlet.height < inlet.width;
       if (const std::string problem = size_problem(inlet, dimension, spacing); !problem.empty())
-        keys.mistake(is_round ? inlet.radius : inlet.width, problem);
+        keys.mistake(is_round ? inlet.radius : is_low ? inlet.height : inlet.width, problem);
     }
     if (inlet.section == InletSection::rectangle && keys.usable(inlet.across, inlet.direction)) {
       const Vector<3> direction = vector_of<3>(inlet.direction), wish = vector_of<3>(inlet.across);

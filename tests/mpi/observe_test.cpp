@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "impinge/cases/make_simulation.hpp"
@@ -122,6 +123,28 @@ TEST(Observed, TankInThreeDimensionsIsThatOfASingleRank) {
   EXPECT_NEAR(values[0], weight, 0.02 * weight);
   EXPECT_NEAR(values[4], weight, 0.02 * weight);
   EXPECT_NEAR(values[8], tank.tank.fluid_height, 1e-3 * tank.tank.fluid_height);
+}
+
+TEST(Observed, DischargeOfARoundJetIsThatOfASingleRank) {
+  const Case jet = parse_case({{"jet.toml", R"(geometry = "scene"
+dimension = 3
+particles.spacing = 0.02
+time = {end = 1.0, dt = 3e-3}
+domain = {low = [-0.3, -0.3, -0.2], high = [0.3, 0.3, 0.6]}
+[[inlet]]
+section = "circle"
+center = [0, 0, 0]
+direction = [0, 0, 1]
+radius = 0.1
+speed = 1.0
+[[section]]
+begin = [-0.2, -0.2, 0.1]
+end = [0.2, -0.2, 0.1]
+side = [0, 0.4, 0]
+)"}});
+  const auto values = expect_the_same_tables<3>(jet, 80, 1);
+  // Rows cross one at a time, every 0.02 m.
+  EXPECT_NEAR(values[1], 0.01 * std::numbers::pi * (80 * 3e-3 - 0.1), 0.01 * std::numbers::pi * 0.03);
 }
 
 TEST(Observed, JetsPlateFeelsTheStagnationPressure) {

@@ -358,6 +358,32 @@ class Check(System):
         self.assertEqual(np.sum(items == "domain"), 12)
         self.assertEqual(np.sum(items == "fluid"), 1000)
 
+    def test_shows_openings_in_space(self):
+        place = "center = [0, 0, %d]\ndirection = [0, 1, 1]\nspeed = 1\n[[inlet]]\n"
+        self.path.write_text('geometry = "scene"\ndimension = 3\nparticles.spacing = 0.1\ntime = {end = 1, dt = 1e-3}\n[[inlet]]\n'
+                             + 'section = "circle"\nradius = 0.5\n' + place % 0
+                             + 'section = "annulus"\nradius = 0.5\ninner_radius = 0.3\n' + place % 2
+                             + 'section = "rectangle"\nwidth = 0.6\nheight = 0.3\nacross = [1, 0, 0]\n'
+                             + (place % 4).replace("[[inlet]]", "[[outlet]]")
+                             + 'shape = "box"\nlow = [-1, 2, 0]\nhigh = [1, 3, 9]\n')
+        done = impinge(self.path, "--check", cwd=self.directory)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for line in ("inlet_1: round, radius 0.5 m, ", "inlet_2: a ring, radii 0.3 and 0.5 m, ", "inlet_3: 0.6 m x 0.3 m, "):
+            self.assertIn(f"inlet       {line}", done.stdout)
+        items, names = self.scene()
+        self.assertEqual(names["inlet"], ["inlet_1", "inlet_2", "inlet_3"])
+        with h5py.File(self.out / "flume_scene.vtkhdf") as file:
+            points, begin = file["VTKHDF/Points"][:], file["VTKHDF/Offsets"][:]
+            numbers, normals = file["VTKHDF/CellData/number"][:], file["VTKHDF/CellData/normal"][:]
+        self.assertEqual(np.sum(items == "outlet"), 12)
+        rims = [k for k in np.flatnonzero(items == "inlet") if numbers[k] > 0]
+        self.assertEqual(list(numbers[rims]), [1, 2, 2, 3])
+        for k, size in zip(rims, (0.5, 0.5, 0.3, np.hypot(0.3, 0.15))):
+            rim = points[begin[k]:begin[k + 1]] - [0, 0, 2 * (numbers[k] - 1)]
+            np.testing.assert_allclose(np.linalg.norm(rim, axis=1), size, atol=1e-12)
+            np.testing.assert_allclose(rim @ normals[k], 0, atol=1e-12)
+            np.testing.assert_array_equal(rim[0], rim[-1])
+
     def test_leaves_a_run_as_it_is(self):
         quick = ["--set", "time.end=4e-3"]
         self.assertEqual(impinge(self.path, *quick, cwd=self.directory).returncode, 0)

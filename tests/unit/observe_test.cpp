@@ -272,6 +272,36 @@ TEST(Section, CountsWhatLeavesBoundsThatRepeat) {
   EXPECT_NEAR(sections.measure(1.0)[1], 0.01, 1e-12);
 }
 
+TEST(Section, InSpaceIsAParallelogram) {
+  Particles<3> particles;  // on a lattice in the plane of z
+  for (int a = -20; a < 20; ++a)
+    for (int b = -20; b < 20; ++b)
+      particles.append({{{(a + 0.5) * dp, (b + 0.5) * dp, -0.03}}, {}, 0.0, 0.0, particles.owned, ParticleType::fluid});
+  // From (0, 0, 0) to (1, 0, 0) and then along (0.5, 1, 0), a right hand's thumb is up.
+  const Numbers begin{-0.75, -0.5, 0.0}, end{0.25, -0.5, 0.0}, side{0.5, 1.0, 0.0};
+  Sections<3> sections(MPI_COMM_SELF,
+                       {{.name = "up", .begin = begin, .end = end, .side = side},
+                        {.name = "down", .begin = end, .end = begin, .side = side}},
+                       open_scene<3>(), dp, particles, 0.0);
+  EXPECT_EQ(sections.columns()[0], "up [m^3/s]");
+  EXPECT_EQ(sections.columns()[1], "total_up [m^3]");
+  int inside = 0;
+  for (const Vector<3>& x : particles.position) {
+    const double along_side = x[1] + 0.5, along_way = x[0] + 0.75 - 0.5 * along_side;
+    inside += along_side >= 0.0 && along_side < 1.0 && along_way >= 0.0 && along_way < 1.0;
+  }
+  EXPECT_NEAR(inside, 1.0 / (dp * dp), 10.0);
+  for (Vector<3>& position : particles.position) position[2] += 0.05;
+  sections.count(particles);
+  const auto values = sections.measure(2.0);
+  const double volume = inside * dp * dp * dp;
+  EXPECT_NEAR(values[0], volume / 2.0, 1e-12);
+  EXPECT_NEAR(values[1], volume, 1e-12);
+  EXPECT_NEAR(values[3], -volume, 1e-12);
+  sections.go_on(2.0, values);
+  EXPECT_NEAR(sections.measure(3.0)[1], volume, 1e-12);
+}
+
 /// The steps of 20 whose rows are written, each of 0.01 s; a restart after the 7th changes nothing.
 std::vector<std::int64_t> sampled(double interval, int steps) {
   ObserverSettings settings;
@@ -483,26 +513,32 @@ TEST(ObserverKeys, ProbesStandOutsideOfWallsOrOnThem) {
             Texts{"case.toml:2: probe[1].wall = \"bax\": no wall of this name; allowed: \"none\", \"box\""});
 }
 
-TEST(ObserverKeys, SectionsHaveTwoDimensions) {
-  const std::string text = R"(geometry = "tank"
-dimension = 3
-particles.spacing = 0.1
-time = {end = 2.0, dt = 1e-3}
-tank = {size = [1, 1, 1], fluid_height = 0.5}
-fluid.gravity = [0.0, 0.0, -9.81]
-[[probe]]
-position = [0.5, 0.5, 0]
-[[section]]
-begin = [0, 0, 0]
-end = [1, 0, 0]
-)";
-  try {
-    parse_case({{"case.toml", text}});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.mistakes(), Texts{"case.toml:10: section[1].begin = [0.0, 0.0, 0.0]: a section is a line in two "
-                                      "dimensions; allowed: none in three"});
-  }
+TEST(ObserverKeys, SectionsInSpaceHaveASide) {
+  const auto with = [](const std::string& section) {
+    return parse_case({{"case.toml",
+                        "geometry = \"tank\"\ndimension = 3\nparticles.spacing = 0.1\n"
+                        "time = {end = 2.0, dt = 1e-3}\ntank = {size = [1, 1, 1], fluid_height = 0.5}\n"
+                        "fluid.gravity = [0.0, 0.0, -9.81]\n[[section]]\nbegin = [0, 0, 0]\n" +
+                            section}});
+  };
+  const auto mistakes = [&](const std::string& section) {
+    try {
+      with(section);
+    } catch (const InputError& error) {
+      return error.mistakes();
+    }
+    return Texts{};
+  };
+  const std::string wrong = "0, or along the line from begin to end; allowed: any other vector (m)";
+  EXPECT_EQ(mistakes("end = [1, 0, 0]\n"), Texts{"case.toml:7: section[1].side = [0.0, 0.0, 0.0]: " + wrong});
+  EXPECT_EQ(mistakes("end = [0.5, 0, 0]\nside = [0.5, 0, 0]\n"),
+            Texts{"case.toml:10: section[1].side = [0.5, 0.0, 0.0]: " + wrong});
+  const auto outside = mistakes("end = [1, 0, 0]\nside = [0, 0, -1]\n");
+  ASSERT_EQ(outside.size(), 1u);
+  EXPECT_TRUE(outside[0].starts_with("case.toml:10: section[1].side = [0.0, 0.0, -1.0]: ends outside the scene; "));
+  const Case config = with("end = [1, 0, 0]\nside = [0, 1, 0.5]\n");
+  EXPECT_EQ(observer_lines(config, 3),
+            Texts{"section     section_1: from (0, 0, 0) to (1, 0, 0) m, side (0, 1, 0.5) m"});
 }
 
 }  // namespace

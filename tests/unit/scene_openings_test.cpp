@@ -8,6 +8,7 @@
 #include <set>
 
 #include "impinge/method/motion.hpp"
+#include "impinge/particles/kernel.hpp"
 #include "scene_case.hpp"
 
 namespace impinge {
@@ -341,6 +342,88 @@ TEST(SceneInlet, WallsMustNotBeInItsWay) {
       "\"down\"\ntype = \"constant\"\nvelocity = [0, -1]\n";
   expect_mistake(with(gate), at + "at t = 0.5");
   EXPECT_EQ(scene_mistakes(inlet + "stop = 0.4\n[[wall]]\n" + gate), std::vector<std::string>{});
+}
+
+/// The places of particles in the first rows behind a round inlet's plane, in dp; its axis is z.
+std::vector<Vector<3>> rows_of_ring(double radius, double inner_radius, int rows) {
+  InletEntry entry;
+  entry.direction = {0.0, 0.0, 1.0};
+  entry.section = inner_radius > 0.0 ? InletSection::annulus : InletSection::circle;
+  entry.radius = radius;
+  entry.inner_radius = inner_radius;
+  const Inlet<3> inlet = inlet_of<3>(entry, 1.0, {});
+  const auto count = static_cast<std::int64_t>(inlet.section.size());
+  std::vector<Vector<3>> places;
+  for (int row = 0; row < rows; ++row)
+    for (std::size_t k = 0; k < inlet.section.size(); ++k)
+      places.push_back(inlet.in_row(row * inlet.spacing, k, row * count));
+  return places;
+}
+
+TEST(SceneInlet, RoundSectionsAreAsDenseAsTheLattice) {
+  constexpr double reach = 2.6;
+  const LatticeSums full = lattice_sums<3>(KernelType::non_singular, reach);
+  for (const auto& [radius, inner_radius] : {std::pair(5.0, 0.0), std::pair(10.0, 0.0), std::pair(12.0, 6.0)}) {
+    const std::vector<Vector<3>> places = rows_of_ring(radius, inner_radius, 8);
+    const std::size_t first = places.size() / 2, last = first + places.size() / 8;  // of the row in the middle
+    double nearest = reach, sum = 0.0, number = 0.0, farthest = 0.0;
+    int inner = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      double packing = 0.0;
+      const double r = std::hypot(places[i][0], places[i][1]);
+      EXPECT_TRUE(r < radius - 0.25 && (inner_radius == 0.0 || r > inner_radius + 0.25));  // room for a wall
+      for (std::size_t j = 0; j < places.size(); ++j) {
+        if (j == i) continue;
+        const double distance = norm(places[i] - places[j]), weight = NonSingularKernel::weight(distance, reach);
+        nearest = std::min(nearest, distance);
+        if (r > radius - reach || (inner_radius > 0.0 && r < inner_radius + reach)) continue;
+        packing += packing_weight<3, NonSingularKernel>(weight) / full.packing;
+        number += weight / full.number_density;
+      }
+      if (packing == 0.0) continue;
+      ++inner;
+      sum += packing;
+      farthest = std::max(farthest, std::abs(packing - 1.0));
+    }
+    ASSERT_GT(inner, 0);
+    EXPECT_GT(nearest, 0.75) << radius;                // 0.78 to 0.87
+    EXPECT_NEAR(sum / inner, 1.0, 5e-3) << radius;     // 0.997 to 1.000
+    EXPECT_LT(farthest, 0.02) << radius;               // 0.012
+    EXPECT_NEAR(number / inner, 1.0, 0.03) << radius;  // 0.980 to 0.987
+  }
+}
+
+TEST(SceneInlet, ParticlesOfRoundSectionsMakeNoThreads) {
+  constexpr double behind = 0.2;  // so far from the line along the flow, a particle stands behind another [dp]
+  const std::vector<Vector<3>> places = rows_of_ring(10.0, 0.0, 2);
+  const std::size_t count = places.size() / 2;
+  int threads = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = count; j < places.size(); ++j)
+      threads += std::hypot(places[i][0] - places[j][0], places[i][1] - places[j][1]) < behind;
+  EXPECT_LT(threads / static_cast<double>(count), 0.13);  // 0; by chance it would be pi 0.2^2
+}
+
+TEST(SceneInlet, InSpaceTheKeyThatIsWrongIsTold) {
+  const std::string place = "[[inlet]]\ncenter = [0, 0, 0]\ndirection = [0, 0, 1]\nspeed = 1\n";
+  const auto found = [](const std::string& text) {
+    return case_mistakes({{"case.toml",
+                           "geometry = \"scene\"\ndimension = 3\nparticles.spacing = 0.1\n"
+                           "time = {end = 1, dt = 1e-3}\n" +
+                               text}});
+  };
+  const std::string slot = place + "section = \"rectangle\"\nacross = [1, 0, 0]\n";
+  expect_mistake(found(slot + "width = 1\nheight = 0.05\n"),
+                 "case.toml:12: inlet[1].height = 0.05: less than a particle wide, 0.05 m; allowed: >= 0.1 (m)");
+  expect_mistake(found(slot + "width = 0.05\nheight = 1\n"), "case.toml:11: inlet[1].width = 0.05: less than");
+  // A thin inlet between particles of the wide one.
+  const auto round = [](const std::string& center, const std::string& radius) {
+    return "[[inlet]]\nsection = \"circle\"\ndirection = [0, 0, 1]\nspeed = 1\ncenter = " + center +
+           "\nradius = " + radius + "\n";
+  };
+  const std::string wide = round("[0, 0, 0]", "0.55"), thin = round("[-0.04, 0.03, 0]", "0.05");
+  for (const std::string& text : {wide + thin, thin + wide})
+    expect_mistake(found(text), "its rows overlap those of the inlet \"inlet_1\", given at case.toml:9");
 }
 
 }  // namespace

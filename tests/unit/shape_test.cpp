@@ -587,5 +587,56 @@ TEST(Solids, DistancesOfABlock) {
   EXPECT_NEAR(norm(shape.bounds().high - high), 0.0, 1e-14);
 }
 
+TEST(Solids, DistancesOfAFrustum) {
+  const Vector<3> axis = 1.0 / 3.0 * Vector<3>{{1.0, 2.0, 2.0}};
+  const Transform<3> transform{1.0, rotation(axis, 50.0), {}, {{0.0, -3.0, 0.5}}};
+  for (const auto& [radius, end_radius] :
+       {std::pair(0.5, 0.5), std::pair(0.8, 0.3), std::pair(0.0, 0.6), std::pair(0.7, 0.0)}) {
+    const Frustum frustum(transform({}), transform({{0.0, 0.0, 1.0}}), radius, end_radius);
+    EXPECT_NEAR(frustum.volume(), pi / 3.0 * (radius * radius + radius * end_radius + end_radius * end_radius), 1e-14);
+    // Its surface by points: the mantle, and the discs.
+    std::vector<Vector<3>> surface;
+    constexpr int rings = 60, turn = 180;
+    for (int k = 0; k < turn; ++k) {
+      const auto [cosine, sine] = cosine_and_sine(k * 360.0 / turn);
+      const auto add = [&](double r, double z) { surface.push_back(transform({{r * cosine, r * sine, z}})); };
+      for (int ring = 0; ring <= rings; ++ring) {
+        const double share = static_cast<double>(ring) / rings;
+        add(radius + share * (end_radius - radius), share);
+        add(share * radius, 0.0);
+        add(share * end_radius, 1.0);
+      }
+    }
+    const Box<3> bounds = frustum.bounds();
+    Box<3> found{surface.front(), surface.front()};
+    for (const Vector<3>& point : surface) {
+      EXPECT_NEAR(frustum.distance(point), 0.0, 1e-12);
+      for (int k = 0; k < 3; ++k) {
+        found.low[k] = std::min(found.low[k], point[k]);
+        found.high[k] = std::max(found.high[k], point[k]);
+      }
+    }
+    EXPECT_NEAR(norm(bounds.low - found.low), 0.0, 1e-3);
+    EXPECT_NEAR(norm(bounds.high - found.high), 0.0, 1e-3);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> across(-1.5, 1.5), along(-1.0, 2.0);
+    for (int k = 0; k < 200; ++k) {
+      const Vector<3> place{{across(random), across(random), along(random)}}, point = transform(place);
+      double nearest = infinity;
+      for (const Vector<3>& other : surface) nearest = std::min(nearest, norm(point - other));
+      const bool inside = place[2] > 0.0 && place[2] < 1.0 &&
+                          std::hypot(place[0], place[1]) < radius + place[2] * (end_radius - radius);
+      EXPECT_EQ(frustum.contains(point), inside);
+      const double distance = frustum.distance(point);
+      EXPECT_NEAR(std::abs(distance), nearest, 2e-3 + 2e-3 * (nearest < 0.1));
+      // Along the normal, the surface is where the distance says.
+      const Vector<3> normal = frustum.normal(point);
+      EXPECT_NEAR(norm(normal), 1.0, 1e-12);
+      EXPECT_NEAR(frustum.distance(point - distance * normal), 0.0, 1e-9);
+    }
+    EXPECT_NEAR(norm(frustum.normal(transform({{0.0, 0.0, 0.5}}))), 1.0, 1e-12);  // on the axis
+  }
+}
+
 }  // namespace
 }  // namespace impinge

@@ -1,8 +1,9 @@
 #pragma once
-// Discharge through lines, in two dimensions.
+// Discharge through lines, in three dimensions through parallelograms.
 
 #include <mpi.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,8 +16,9 @@
 
 namespace impinge {
 
-/// Counts the fluid and inlet particles that cross each line, from the left to the right of the way from its begin to
-/// its end as positive: a particle that comes back is taken off again, so that a total is the volume that is beyond.
+/// Counts the fluid and inlet particles that cross each line or parallelogram. From the left to the right of the way
+/// from its begin to its end is positive, in three dimensions the direction of that way x side. A particle that comes
+/// back is taken off again, so that a total is the volume that is beyond.
 template <int Dim>
 class Sections {
  public:
@@ -37,22 +39,23 @@ class Sections {
   /// Collective.
   void count(const Particles<Dim>& particles);
 
-  /// Discharge since the last call [m^2/s] and total [m^2] of each section, the same on all ranks. Collective.
+  /// Discharge since the last call [m^Dim/s] and total [m^Dim] of each section, the same on all ranks. Collective.
   std::vector<double> measure(double time);
 
  private:
   struct Section {
     std::string name;
-    Vector<Dim> middle, along, across;  // unit vectors, the second to the right
-    double length = 0.0;
-    std::int64_t crossings = 0;  // of this rank since the last measure
-    std::int64_t total = 0;      // of all ranks before
+    Vector<Dim> middle, across;                  // across: a unit vector
+    std::array<Vector<Dim>, Dim - 1> inverse{};  // places along the sides, from -1/2 to 1/2, per offset [1/m]
+    std::int64_t crossings = 0;                  // of this rank since the last measure
+    std::int64_t total = 0;                      // of all ranks before
   };
   struct Place {
     std::int64_t id;
     Vector<Dim> position;
   };
 
+  double volume() const;  // of a particle
   bool is_near(const Vector<Dim>& position, double width) const;
   void remember(const Particles<Dim>& particles);
 

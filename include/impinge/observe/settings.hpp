@@ -26,11 +26,22 @@ struct GaugeSettings {
   double length = 0.0;  ///< [m]
 };
 
-/// One table of [[section]]: the discharge through a line, in two dimensions.
+/// One table of [[section]]: the discharge through a line, in three dimensions through a parallelogram.
 struct SectionSettings {
   std::string name{};
-  Numbers begin{}, end{};  ///< [m]
+  Numbers begin{}, end{};  ///< of the line, or of one side [m]
+  Numbers side{};          ///< the other side, as a vector from either end; in two dimensions 0 [m]
 };
+
+/// The ends of a section's line, or the corners of its parallelogram in order [m].
+template <int Dim>
+std::vector<Vector<Dim>> corners_of(const SectionSettings& section) {
+  std::vector<Vector<Dim>> corners{vector_of<Dim>(section.begin), vector_of<Dim>(section.end)};
+  if constexpr (Dim == 3)
+    for (const Numbers& end : {section.end, section.begin})
+      corners.push_back(vector_of<Dim>(end) + vector_of<Dim>(section.side));
+  return corners;
+}
 
 /// The part of a case that says what is measured, and when rows are written.
 struct ObserverSettings {
