@@ -82,8 +82,8 @@ void Output::go_on(std::int64_t step) {
 }
 
 void Output::record(const StepReport& report, double seconds) {
-  history_.append(history_row(report, seconds));
   lock_.beat();
+  history_.append(history_row(report, seconds));
 }
 
 void Output::record(const std::vector<TableLine>& rows) {

@@ -128,7 +128,8 @@ std::string partial_path(const std::string& path) { return path + partial_ending
 
 bool holds_run(const std::string& directory, const std::string& name) {
   return fs::exists(directory) &&
-         (!list_snapshots(directory, name).empty() || !list_checkpoints(directory, name).empty());
+         (fs::exists(history_path(directory, name)) || !list_snapshots(directory, name).empty() ||
+          !list_checkpoints(directory, name).empty());
 }
 
 std::string set_run_aside(const std::string& directory, const std::string& name) {

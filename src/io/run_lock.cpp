@@ -23,7 +23,6 @@ namespace impinge {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds beat_interval{20};
 constexpr double oldest_beat = 120.0;  // of a living owner on another host [s]
@@ -34,6 +33,7 @@ struct Owner {
   long process = 0;
   std::string started;  // by the kernel's clock, which tells a process from a later one of the same number
   std::string job;      // of the batch system, or "-"
+  std::string space;    // of process numbers: that of a container is its own
 };
 
 /// When a process started, in the kernel's clock ticks; "-" where there is none, or one that has ended and only waits
@@ -54,7 +54,9 @@ Owner this_process() {
   const char* job = "-";
   for (const char* name : {"SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "JOB_ID"})
     if (const char* value = std::getenv(name); value && *value) job = value;
-  return {host, getpid(), start_of(getpid()), job};
+  std::error_code error;
+  const std::string space = fs::read_symlink("/proc/self/ns/pid", error).string();
+  return {host, getpid(), start_of(getpid()), job, error ? "-" : space};
 }
 
 Owner owner_in(const std::string& path) {
@@ -63,12 +65,14 @@ Owner owner_in(const std::string& path) {
   if (fs::is_regular_file(path, error))
     std::ifstream(path).read(text.data(), static_cast<std::streamsize>(text.size()));
   Owner owner;
-  std::istringstream(text.substr(0, text.find('\0'))) >> owner.host >> owner.process >> owner.started >> owner.job;
+  std::istringstream(text.substr(0, text.find('\0'))) >> owner.host >> owner.process >> owner.started >> owner.job >>
+      owner.space;
   return owner;
 }
 
 bool is_alive(const Owner& owner, const std::string& path) {
-  if (owner.host == this_process().host) return start_of(owner.process) == owner.started;
+  const Owner self = this_process();
+  if (owner.host == self.host && owner.space == self.space) return start_of(owner.process) == owner.started;
   struct stat status {};
   return stat(path.c_str(), &status) == 0 && std::difftime(std::time(nullptr), status.st_mtime) < oldest_beat;
 }
@@ -76,7 +80,7 @@ bool is_alive(const Owner& owner, const std::string& path) {
 /// A name beside the lock that no other process uses; short, since the case's name may be long.
 std::string own_name(const std::string& path) {
   const Owner self = this_process();
-  return fmt::format("{}.{:x}.{}", path, std::hash<std::string>{}(self.host), self.process);
+  return fmt::format("{}.{:x}.{}", path, std::hash<std::string>{}(self.host + self.space), self.process);
 }
 
 /// Writes a file, opened with these flags beside O_WRONLY and O_CREAT; an error's number or 0.
@@ -94,7 +98,7 @@ int write_file(const std::string& path, int flags, const std::string& text) {
 /// killed leaves none without; not so on file systems without links.
 int create_lock(const std::string& path) {
   const Owner self = this_process();
-  const std::string text = fmt::format("{} {} {} {}\n", self.host, self.process, self.started, self.job);
+  const std::string text = fmt::format("{} {} {} {} {}\n", self.host, self.process, self.started, self.job, self.space);
   const std::string own = own_name(path);
   int reason = write_file(own, O_TRUNC, text);
   if (reason != 0) return reason;
@@ -119,7 +123,10 @@ RunLock::RunLock(const std::string& directory, const std::string& name)
     : path_((fs::path(directory) / (name + ".lock")).string()), last_beat_(Clock::now()) {
   for (int attempt = 0; attempt < 3; ++attempt) {
     errno = create_lock(path_);
-    if (errno == 0) return;
+    if (errno == 0) {
+      inode_ = inode_of(path_);
+      return;
+    }
     if (errno != EEXIST) break;
     const Owner owner = owner_in(path_);
     if (is_alive(owner, path_)) {
@@ -136,20 +143,36 @@ RunLock::RunLock(const std::string& directory, const std::string& name)
   throw FileError(fmt::format("cannot write {}: {}", std::exchange(path_, ""), reason));
 }
 
-RunLock::RunLock(RunLock&& other) noexcept : path_(std::exchange(other.path_, "")), last_beat_(other.last_beat_) {}
+RunLock::RunLock(RunLock&& other) noexcept
+    : path_(std::exchange(other.path_, "")), inode_(other.inode_), last_beat_(other.last_beat_) {}
 
 RunLock& RunLock::operator=(RunLock&& other) noexcept {
   std::swap(path_, other.path_);
+  std::swap(inode_, other.inode_);
   std::swap(last_beat_, other.last_beat_);
   return *this;
 }
 
 RunLock::~RunLock() {
-  if (!path_.empty()) unlink(path_.c_str());
+  if (!path_.empty() && inode_of(path_) == inode_) unlink(path_.c_str());
+}
+
+RunLock::Inode RunLock::inode_of(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? Inode{status.st_dev, status.st_ino} : Inode{};
+}
+
+void RunLock::check() const {
+  if (path_.empty() || inode_of(path_) == inode_) return;
+  const Owner owner = owner_in(path_);
+  throw std::runtime_error(
+      fmt::format("{}: {} has taken this run over; this process writes nothing more", path_,
+                  owner.host.empty() ? "another process" : fmt::format("process {} on {}", owner.process, owner.host)));
 }
 
 void RunLock::beat() {
-  if (path_.empty() || Clock::now() - last_beat_ < beat_interval) return;
+  if (path_.empty() || std::chrono::abs(Clock::now() - last_beat_) < beat_interval) return;
+  check();
   last_beat_ = Clock::now();
   utimensat(AT_FDCWD, path_.c_str(), nullptr, 0);
 }

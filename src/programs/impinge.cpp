@@ -16,6 +16,7 @@
 #include "impinge/parallel/exchange.hpp"
 #include "impinge/programs/command_line.hpp"
 #include "impinge/programs/run.hpp"
+#include "impinge/programs/standard_streams.hpp"
 
 namespace {
 
@@ -70,7 +71,7 @@ int run_program(int argc, char** argv) {
     } else {
       return run_case(comm, config) ? done : stopped;
     }
-    return done;
+    return flush_output("impinge") ? done : broken;
   } catch (const InputError& error) {
     if (first)
       for (const std::string& mistake : error.mistakes()) fmt::print(stderr, "impinge: {}\n", mistake);
@@ -97,10 +98,12 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (print_text(argc, argv)) return done;
+  impinge::prepare_streams();
+  if (print_text(argc, argv)) return impinge::flush_output("impinge") ? done : broken;
   impinge::prepare_file_access();
   MPI_Init(&argc, &argv);
   const int code = run_program(argc, argv);
+  impinge::flush_output("impinge");  // a run is done without it, too
   MPI_Finalize();
   return code;
 }

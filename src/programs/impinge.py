@@ -18,8 +18,11 @@ FileNotFoundError, OSError, KeyError or ValueError, with the path or the name th
 import csv
 import functools
 import json
+import os
 import pathlib
 import re
+import socket
+import time
 
 import h5py
 import numpy as np
@@ -40,6 +43,8 @@ PANELS = {
     "forces": [("fx_", "N/m", "F_x"), ("fy_", "N/m", "F_y"), ("torque_", "N", "torque"),
                ("fx_", "N", "F_x"), ("fy_", "N", "F_y"), ("fz_", "N", "F_z"), ("torque_", "N m", "torque")],
 }
+
+OLDEST_BEAT = 120.0  # of a run that lives on another host or in another container: the age of its lock [s]
 
 FLUID, INLET, WALL, GHOST = range(4)  # the values of Snapshot.type
 
@@ -260,6 +265,19 @@ class Run:
     def snapshots(self):
         """The snapshots, one after the other, by step."""
         return (Snapshot(path) for path in self.paths.values())
+
+    @property
+    def is_living(self):
+        """Whether a program is writing the run: its lock has an owner that lives, by the rules of src/io/run_lock.cpp."""
+        lock = self.file(".lock")
+        try:
+            host, process, started, _, space = lock.read_text(encoding="utf-8", errors="replace").split()
+            if (host, space) != (socket.gethostname(), os.readlink("/proc/self/ns/pid")):
+                return time.time() - lock.stat().st_mtime < OLDEST_BEAT
+            state, *fields = pathlib.Path(f"/proc/{int(process)}/stat").read_bytes().rpartition(b")")[2].decode().split()
+            return state not in "ZX" and fields[18] == started
+        except (OSError, ValueError):
+            return False
 
     def snapshot(self, step=None, time=None):
         """The snapshot of a step, the one nearest to a time [s], or the last."""

@@ -231,11 +231,10 @@ def duration(seconds):
 def progress(run, snapshot, history):
     """How far the run is: its status in a word, the share that is done, and rows of a table."""
     end = run.case["time"]["end"]
-    is_living = run.file(".lock").exists()
     time = history.time[-1] if history else snapshot.time
     status = snapshot.status
     if status == "running":
-        status = "running" if is_living else "stopped"
+        status = "running" if run.is_living else "stopped"
     rows = [("time", f"{time:.4g} of {end:.4g} s"), ("snapshots", f"{len(run.steps)}, the last at t = {snapshot.time:.4g} s")]
     if history:
         seconds = history["seconds"].sum()

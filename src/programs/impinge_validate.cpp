@@ -6,11 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/core/mpi.hpp"
 #include "impinge/programs/figures.hpp"
+#include "impinge/programs/standard_streams.hpp"
 #include "impinge/validation/validation.hpp"
 
 namespace {
@@ -32,7 +34,7 @@ int run_program(const Arguments& arguments) {
     const Validation validation = validate(arguments.directory, arguments.selection);
     write_report(validation, folder);
     fmt::print("{}\nreport     {}/validation.json\n", to_table(validation), folder);
-    std::fflush(stdout);
+    flush_output("impinge-validate");
     if (!arguments.no_figures && !draw({arguments.directory}))
       fmt::print(stderr, "impinge-validate: no figures: impinge-plot failed; the report is complete\n");
     return done;
@@ -48,6 +50,7 @@ int run_program(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  prepare_streams();
   Arguments arguments;
   CLI::App app(
       "Measures a run with a plane jet against the exact solution: geometry = \"jet\", or a jet of a scene on a plate, "
@@ -65,7 +68,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? done : wrong_input;
+    const int code = app.exit(error);
+    if (!std::cout.flush()) return broken;
+    return code == 0 ? done : wrong_input;
   }
   MPI_Init(&argc, &argv);
   const int code = launched_process().rank == 0 ? run_program(arguments) : done;  // of several processes the first

@@ -55,10 +55,38 @@ double cells_of(const Scene<Dim>& scene, const Case& config) {
   return cells;
 }
 
+/// The graph of the cells with particles, where it is partitioned [bytes].
+template <int Dim>
+double graph_of(double particles, const Case& config, int ranks) {
+  const double occupied_cells = particles / std::pow(config.kernel.cell_edge(), Dim);
+  return ranks > 1 ? occupied_cells * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1) : 0.0;
+}
+
+/// Ranks of one node.
+class Node {
+ public:
+  explicit Node(MPI_Comm comm) { MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm_); }
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+  ~Node() { MPI_Comm_free(&comm_); }
+  MPI_Comm comm() const { return comm_; }
+
+ private:
+  MPI_Comm comm_ = MPI_COMM_NULL;
+};
+
+/// What the ranks need over what is free, of the rank or the node where that is most; `need`: of this rank [bytes].
+/// Collective.
+double load(MPI_Comm comm, double need) {
+  const Node node(comm);
+  const double of_node = sum_over_ranks(node.comm(), need) / free_memory_of_node();
+  return max_over_ranks(comm, std::max(of_node, need / free_memory_of_process()));
+}
+
 [[noreturn]] void refuse(const Case& config, double particles, double need, double free, double spacing,
                          const char* instead) {
   throw InputError(
-      {fmt::format("{}: particles.spacing = {}: not enough memory: some {:.3g} particles need {} on each rank, {} are "
+      {fmt::format("{}: particles.spacing = {}: not enough memory: some {:.3g} particles need {} on a rank, {} are "
                    "free for it; allowed: from about {:.2g} (m) on{}",
                    config.spacing_place, number_text(config.particles.spacing), particles, bytes_text(need),
                    bytes_text(free), spacing, instead)});
@@ -77,37 +105,36 @@ MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
   const double halo = std::pow(std::pow(owned, 1.0 / Dim) + 2.0 * config.kernel.largest(), Dim) - owned;
   return {.particles = counts.particles,
           .rank = (owned + halo) * costs.particle_memory + counts.rows / ranks * costs.row_memory +
-                  cells_of(scene, config) * costs.cell_memory + libraries};
+                  cells_of(scene, config) * costs.cell_memory + libraries,
+          .graph = graph_of<Dim>(counts.particles, config, ranks)};
 }
 
 double free_memory(MPI_Comm comm) {
-  MPI_Comm node = MPI_COMM_NULL;
-  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-  const double share = free_memory_of_node() / ranks_of(node);
-  MPI_Comm_free(&node);
+  const Node node(comm);
+  const double share = free_memory_of_node() / ranks_of(node.comm());
   return -max_over_ranks(comm, -std::min(share, free_memory_of_process()));
 }
 
 template <int Dim>
 void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles) {
   const MemoryNeed need = memory_need<Dim>(config, ranks_of(comm), particles);
+  const bool partitions = needs_edges(comm, ranks_of(comm), config.parallel.partitioner);
+  const double used = load(comm, need.rank + (partitions ? need.graph : 0.0));
   const double free = free_memory(comm);
-  const double spacing = config.particles.spacing;
-  if (need.rank > free)
-    refuse(config, need.particles, need.rank, free, spacing * std::pow(need.rank / free, 1.0 / Dim),
+  if (used > 1.0)
+    refuse(config, need.particles, need.rank + need.graph, free, config.particles.spacing * std::pow(used, 1.0 / Dim),
            ", or more nodes (--plan)");
-  if (with_preconditioner * need.rank > free && rank_of(comm) == 0)
-    fmt::print(stderr, "impinge: warning: memory may run out: {} to {} are needed on each rank, {} are free for it\n",
-               bytes_text(need.rank), bytes_text(with_preconditioner * need.rank), bytes_text(free));
+  if (with_preconditioner * used > 1.0 && rank_of(comm) == 0)
+    fmt::print(stderr, "impinge: warning: memory may run out: {} to {} are needed on a rank, {} are free for it\n",
+               bytes_text(need.rank + need.graph), bytes_text(with_preconditioner * need.rank + need.graph),
+               bytes_text(free));
 }
 
 template <int Dim>
 void check_memory_of_plan(MPI_Comm comm, const Case& config, int ranks) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
   const double particles = count(scene).particles;
-  const double occupied_cells = particles / std::pow(config.kernel.cell_edge(), Dim);
-  const double graph = ranks > 1 ? occupied_cells * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1) : 0.0;
-  const double need = cells_of(scene, config) * plan_of_a_cell + graph + libraries;
+  const double need = cells_of(scene, config) * plan_of_a_cell + graph_of<Dim>(particles, config, ranks) + libraries;
   const double free = free_memory(comm);
   if (need > free)
     refuse(config, particles, need, free, config.particles.spacing * std::pow(need / free, 1.0 / Dim),

@@ -1,6 +1,9 @@
 #include "impinge/programs/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "impinge/method/costs.hpp"
@@ -83,6 +86,9 @@ template <int Dim>
 Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
   const CellGrid<Dim> cells(scene.bounds, scene.periodic, least_cell_edge(config));
+  constexpr double of_a_cell = 2e-7, patience = 1.0;  // measured with few particles in each; what needs no word [s]
+  if (const double seconds = of_a_cell * cells.count(); seconds > patience && rank_of(comm) == 0)
+    fmt::print(stderr, "impinge: planning {} background cells takes some {:.2g} s\n", cells.count(), seconds);
   const CellCounts counts = count_particles<Dim>(comm, cells, scene);
   // One process partitions: PTScotch waits for ever where three are to make more than three parts.
   std::vector<int> owner(counts.work.size());

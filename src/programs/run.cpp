@@ -325,6 +325,7 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observe
                duration_text(seconds_since(start)), report.in - report.out - report.lost - report.fluid);
   for (const Outlet<Dim>& outlet : simulation.outlets())
     if (first && outlet.region) fmt::print("outlet {}: {} particles\n", outlet.name, outlet.out);
+  std::fflush(stdout);  // while a reader that has gone is no reason to end
   return true;
 }
 

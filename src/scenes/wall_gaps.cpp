@@ -37,12 +37,20 @@ class Placed {
       if (!begins_wet(walls_[a], outlines_[a], gap.begin, way, spacing_)) return false;
       if (!begins_wet(walls_[b], outlines_[b], gap.end, -1.0 * way, spacing_)) return false;
       return std::ranges::none_of(outlines_, [&](const Outline& outline) {
-        return outline.first_hit(gap.begin + on_face * way, gap.end - on_face * way).has_value();
+        return outline.first_hit(gap.begin + on_face * way, gap.end - on_face * way).has_value() ||
+               leads_on(outline, gap.begin, way) || leads_on(outline, gap.end, -1.0 * way);
       });
     });
   }
 
  private:
+  /// True if a wall that touches a gap's end comes nearer to the other end: what runs into a corner there is no gap.
+  bool leads_on(const Outline& outline, const Vector<2>& end, const Vector<2>& way) const {
+    constexpr double step = 0.01, rounding = 1e-9;  // of the width
+    if (outline.nearest(end).distance > touching * spacing_) return false;
+    return norm(outline.nearest(end + step * way).point - end - way) < (1.0 - rounding) * norm(way);
+  }
+
   const std::vector<Wall<2>>& walls_;
   WetSpace<2> wet_;
   double spacing_;

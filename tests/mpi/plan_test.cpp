@@ -4,12 +4,16 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <fstream>
 #include <numeric>
 #include <set>
 
 #include "gather.hpp"
 #include "impinge/cases/make_simulation.hpp"
+#include "impinge/core/memory.hpp"
+#include "impinge/programs/memory_check.hpp"
 #include "shipped_case.hpp"
 
 namespace impinge {
@@ -138,6 +142,31 @@ void expect_memory(const Case& config) {
 TEST(Plan, EstimatesTheMemoryOfARun) {
   expect_memory<2>(shipped_case("jet60-quick.toml", {"jet.start=steady"}));
   expect_memory<3>(shipped_case("hydrostatic-3d.toml", {"tank.size=[0.4, 0.4, 0.5]", "tank.fluid_height=0.4"}));
+}
+
+// By the limit of its process the first rank has room for its particles, but not for the graph of the cells.
+TEST(Plan, TheGraphOfARunCountsWhereItIsPartitioned) {
+  const Case config = shipped_case("hydrostatic.toml", {"particles.spacing=2e-4"});
+  const MemoryNeed need = memory_need<2>(config, ranks_of(comm));
+  EXPECT_EQ(need.graph > 0.0, ranks_of(comm) > 1);
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  std::string status;
+  std::getline(std::ifstream("/proc/self/status"), status, '\0');
+  const auto limited = [&](double bytes) {
+    const rlimit limit{static_cast<rlim_t>(1024.0 * number_behind("VmSize", status) + bytes), before.rlim_max};
+    setrlimit(RLIMIT_AS, &limit);
+    bool fits = true;
+    try {
+      check_memory<2>(comm, config);
+    } catch (const InputError&) {
+      fits = false;
+    }
+    setrlimit(RLIMIT_AS, &before);
+    return fits;
+  };
+  EXPECT_EQ(limited(need.rank + 0.7 * need.graph - 1e6), false);
+  EXPECT_EQ(limited(need.rank + 1.3 * need.graph + 1e6), true);
 }
 
 }  // namespace

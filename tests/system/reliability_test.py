@@ -6,6 +6,7 @@ import csv
 import errno
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import subprocess
@@ -229,6 +230,83 @@ class Signals(Reliability):
             self.expect_the_same_run("out", "whole")
 
 
+    def test_streams_that_are_gone_end_no_run(self):
+        """A log on a full disk, closed streams, a terminal that was closed, a reader that has gone."""
+        case = (ROOT / "input/hydrostatic.toml", *(word for setting in (
+            "particles.spacing=0.05", "time.end=0.05", "output.interval=0", "output.average_start=0",
+            "walls.model=particles") for word in ("--set", setting)))  # the last is a warning on standard error
+
+        def at_the_end(out, shell):
+            words = " ".join(map(shlex.quote, command(*case, "--set", f"output.directory={out}", ranks=0)))
+            done = subprocess.run(["bash", "-c", shell.replace("RUN", words)], cwd=self.directory, capture_output=True,
+                                  text=True, timeout=120, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertEqual(len(self.files(out, "checkpoint")), 1)
+            self.assertEqual(self.files(out, "lock"), [])
+            return done.stderr
+
+        self.assertIn("impinge: cannot write to standard output: No space left on device", at_the_end("a", "RUN >/dev/full"))
+        at_the_end("b", "RUN >/dev/full 2>&1")
+        at_the_end("c", "RUN <&- >&- 2>&-")
+        for path in (self.directory / "c").iterdir():
+            self.assertNotIn(b"particles in - out", path.read_bytes())
+        at_the_end("d", "set -o pipefail; RUN | true")
+        self.assertEqual(self.history("a"), self.history("c"))
+
+        controller, terminal = os.openpty()
+        run = subprocess.Popen(command(*case, "--set", "output.directory=e", "--set", "time.end=1", ranks=0),
+                               cwd=self.directory, stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=True,
+                               preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        os.close(terminal)
+        self.assertIn(b"impinge", os.read(controller, 10000))
+        os.close(controller)
+        self.assertEqual(run.wait(120), 0)
+        self.assertEqual(len(self.files("e", "checkpoint")), 1)
+
+    def test_a_file_beyond_its_largest_size_is_told(self):
+        words = command(ROOT / "input/hydrostatic.toml", "--set", "particles.spacing=1e-3", "--set", "time.end=1e-3",
+                        "--set", "output.directory=out", "--set", "output.average_start=0", ranks=0)
+        done = subprocess.run(["bash", "-c", 'ulimit -f 3000; exec "$@"', "bash", *words], cwd=self.directory,
+                              capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, "impinge: cannot write out/hydrostatic_.*: File too large")
+        self.assertEqual(self.files("out", "lock"), [])
+
+    def test_a_run_that_was_taken_over_writes_nothing_more(self):
+        """It stood still for so long that another host took it for dead."""
+        run = subprocess.Popen(command(QUICK, "--set", "output.directory=out", "--set", "time.end=1000", ranks=2),
+                               cwd=self.directory, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        lock, history = self.directory / "out/jet60-quick.lock", self.directory / "out/jet60-quick_history.csv"
+        while not history.exists() or history.read_text().count("\n") < 3:
+            time.sleep(0.1)
+        owner = int(lock.read_text().split()[1])
+        os.kill(owner, signal.SIGSTOP)
+        time.sleep(21)
+        other = self.directory / "out/other"
+        other.write_text("elsewhere 7 1 - -\n")
+        other.rename(lock)
+        before = history.read_bytes()
+        os.kill(owner, signal.SIGCONT)
+        _, told = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("process 7 on elsewhere has taken this run over", told)
+        self.assertEqual(history.read_bytes(), before)
+        self.assertTrue(lock.exists())
+
+    def test_a_container_of_the_same_host_is_another_host(self):
+        container = ["unshare", "--pid", "--fork", "--mount-proc"]
+        if subprocess.run([*container, "true"], capture_output=True, check=False).returncode:
+            self.skipTest("process numbers of one's own are not allowed here")
+        words = command(QUICK, "--set", "output.directory=out", "--set", "time.end=1000", ranks=0)
+        run = subprocess.Popen(words, cwd=self.directory, stdout=subprocess.DEVNULL)
+        while not self.files("out", "vtkhdf") if (self.directory / "out").exists() else True:
+            time.sleep(0.1)
+        done = subprocess.run([*container, *words], cwd=self.directory, capture_output=True, text=True, timeout=60, check=False)
+        run.terminate()
+        self.assertEqual(run.wait(60), STOPPED)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("is writing this run", done.stderr)
+
     def test_kill_9_of_one_rank_ends_all_and_loses_nothing(self):
         run = self.start("checkpoint.steps=1")
         os.kill(self.ranks_of(run)[-1], signal.SIGKILL)
@@ -351,8 +429,8 @@ class Faults(Reliability):
         self.assertEqual([int(row["step"]) for row in self.history("disk")], list(range(1, newest + 3)))
 
 
-class Slurm(Reliability):
-    def test_queues_again_after_a_signal_and_goes_on(self):
+class Jobs(Reliability):
+    def test_a_slurm_job_queues_again_after_a_signal_and_goes_on(self):
         """With an srun that notes its words and ends as it is told, and an scontrol that notes them."""
         tools = self.directory / "tools"
         tools.mkdir()
@@ -377,7 +455,38 @@ class Slurm(Reliability):
         (self.directory / "output/b").mkdir(parents=True)
         (self.directory / "output/b/b_00000001.checkpoint").write_text("")
         self.assertEqual(job(1, STOPPED), (0, [f"{program} --restart output/b --set time.end=2", "scontrol requeue 7"]))
-        self.assertEqual(job(0, 0), (0, [start]))  # a new job starts anew
+        goes_on = f"{program} --restart output/b --set time.end=2"
+        self.assertEqual(job(0, 0), (0, [goes_on]))  # submitted once more
+        (self.directory / "a").mkdir()
+        (self.directory / "a/b.toml").write_text("")
+        os.utime(self.directory / "output/b/b_00000001.checkpoint", (0, 0))
+        self.assertEqual(job(0, 0), (0, [start]))  # another case
+        self.assertEqual(job(1, 0), (0, [goes_on]))  # the same job
+
+    def test_a_pbs_job_goes_on_with_what_is_there(self):
+        nodes = self.directory / "nodes"
+        nodes.write_text("one\ntwo\n")
+        (self.directory / "mpirun").write_text('#!/bin/sh\necho mpirun "$@" >>calls\n')
+        (self.directory / "mpirun").chmod(0o755)
+
+        def job():
+            environment = {"PATH": f"{self.directory}:{os.environ['PATH']}", "PBS_NODEFILE": str(nodes), "CASE": "b.toml"}
+            (self.directory / "calls").unlink(missing_ok=True)
+            subprocess.run(["bash", ROOT / "jobs/impinge.pbs"], cwd=self.directory, env={**os.environ, **environment},
+                           check=True)
+            return (self.directory / "calls").read_text()
+
+        program = f"mpirun -n 2 --hostfile {nodes} build/release/bin/impinge"
+        start, goes_on = f"{program} b.toml --set output.directory=output/b\n", f"{program} --restart output/b\n"
+        self.assertEqual(job(), start)
+        (self.directory / "b.toml").write_text("")
+        os.utime(self.directory / "b.toml", (0, 0))
+        (self.directory / "output/b").mkdir(parents=True)
+        (self.directory / "output/b/b_00000001.checkpoint").write_text("")
+        self.assertEqual(job(), goes_on)
+        os.utime(self.directory / "output/b/b_00000001.checkpoint", (0, 0))
+        (self.directory / "b.toml").write_text("changed")
+        self.assertEqual(job(), start)
 
 
 class Memory(Reliability):

@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -178,7 +179,21 @@ class Report(Runs):
         page = self.report(copy)
         self.assertEqual(page.status, "stopped")
         self.assertIn("no program continues it", page.warnings[0])
-        (copy / "column.lock").write_text("")
+        lock, host, space = copy / "column.lock", socket.gethostname(), os.readlink("/proc/self/ns/pid")
+        started = pathlib.Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19]
+        ended = subprocess.Popen(["true"])
+        ended.wait()
+        for text in ("", "far 1", f"{host} {ended.pid} {started} - {space}\n", f"{host} {os.getpid()} 1 - {space}\n",
+                     f"{host} x 1 - {space}\n"):
+            lock.write_text(text)
+            self.assertFalse(run.is_living, text)
+        for text in (f"another-host 7 1 - {space}\n", f"{host} 7 1 - of-a-container\n"):
+            lock.write_text(text)
+            self.assertTrue(run.is_living)
+            os.utime(lock, (0, 0))  # its owner has written nothing for long
+            self.assertFalse(run.is_living)
+        self.assertEqual(self.report(copy).status, "stopped")
+        lock.write_text(f"{host} {os.getpid()} {started} - {space}\n")
         page = self.report(copy)
         self.assertEqual((page.status, page.warnings, len(page.frames)), ("running", [], 4))
         self.assertIn("time left", page.text)

@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -65,6 +66,8 @@ class CommandLine(System):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn(part, done.stdout)
         self.assertEqual(list(self.directory.iterdir()), [])
+        done = impinge(QUICK, "--plan", "2", "--set", "plate.begin=-2e4", cwd=self.directory)
+        self.assertRegex(done.stderr, r"^impinge: planning 1\d{7} background cells takes some \d s\n$")
         done = impinge(QUICK, "--check", cwd=self.directory)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bytes per particle", done.stdout)
@@ -145,7 +148,7 @@ class CommandLine(System):
             done = limited(tank, *large, *words)
             self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
             self.assertRegex(done.stderr, r"^impinge: --set: particles.spacing = 2e-05: not enough memory: some \S+ "
-                             r"particles need \S+ GB on each rank, \S+ GB are free for it; allowed: from about \S+ \(m\)")
+                             r"particles need \S+ GB on a rank, \S+ GB are free for it; allowed: from about \S+ \(m\)")
         self.assertFalse((self.directory / "out").exists())
         # What is free here does not bound the plan of a cluster, but for the cells of the case itself.
         self.assertEqual(limited(tank, "--set", "particles.spacing=2e-4", "--plan", "64").returncode, 0)
@@ -165,6 +168,14 @@ class CommandLine(System):
             self.assertEqual(call(BIN / "impinge", word, ranks=3).stdout, done.stdout)
         for word in ("--help", "--version"):
             self.assertEqual(call(BIN / "impinge-validate", word, environment=broken).returncode, 0)
+
+    def test_a_text_that_cannot_be_written_is_an_error(self):
+        for words in (["--new", "dam-break"], ["--describe"], ["--help"], [QUICK, "--plan", "2"], [QUICK, "--check"]):
+            words = " ".join(shlex.quote(str(word)) for word in (BIN / "impinge", *words))
+            done = call("bash", "-c", f"{words} >/dev/full", cwd=self.directory)
+            self.assertEqual(done.returncode, 1, words)
+            self.assertIn("impinge: cannot write to standard output: No space left on device\n", done.stderr)
+        self.assertEqual(call("bash", "-c", f"'{BIN}/impinge-validate' --help >/dev/full").returncode, 1)
 
     def test_processes_of_another_mpi_are_refused(self):
         for variables, text in (
@@ -214,6 +225,11 @@ class CommandLine(System):
         # A third run at the same second finds another name.
         self.assertEqual(impinge(*words, cwd=self.directory).returncode, 0)
         self.assertEqual(len(list(out.glob("short_before_*"))), 2)
+        # A history alone is a run, too.
+        for path in (*out.glob("*.vtkhdf"), *out.glob("*.checkpoint")):
+            path.unlink()
+        self.assertIn("the earlier run of this case is now in", impinge(*words, cwd=self.directory).stdout)
+        self.assertEqual(len(list(out.glob("short_before_*/short_history.csv"))), 3)
 
 
 SCENE = """geometry = "scene"

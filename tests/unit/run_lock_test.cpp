@@ -63,8 +63,34 @@ TEST_F(RunLocks, OfADeadProcessGiveWay) {
 TEST_F(RunLocks, OfALaterProcessWithTheSameNumberGiveWay) {
   char host[256] = "";
   gethostname(host, sizeof host - 1);
-  std::ofstream(file_) << host << ' ' << getpid() << " 1 -\n";  // started with the machine
+  const std::string start = host + (' ' + std::to_string(getpid())) + " 1 - ";  // started with the machine
+  std::ofstream(file_) << start << fs::read_symlink("/proc/self/ns/pid").string() << '\n';
   EXPECT_EQ(refusal(), "");
+  // A number of another container's tells nothing: it may live.
+  std::ofstream(file_) << start << "pid:[1]\n";
+  EXPECT_NE(refusal().find("is writing this run"), std::string::npos);
+  fs::last_write_time(file_, fs::file_time_type::clock::now() - std::chrono::minutes(3));
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(RunLocks, ThatAnotherProcessHasTakenAreItsOwn) {
+  {
+    const RunLock lock(directory_, "case");
+    lock.check();
+    std::ofstream(directory_ + "/other") << "elsewhere 7 1 - -\n";
+    fs::rename(directory_ + "/other", file_);
+    try {
+      lock.check();
+      FAIL();
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(error.what(),
+                file_ + ": process 7 on elsewhere has taken this run over; this process writes nothing more");
+    }
+  }
+  EXPECT_TRUE(fs::exists(file_));
+  const RunLock lock(directory_, "another");
+  fs::remove(directory_ + "/another.lock");
+  EXPECT_THROW(lock.check(), std::runtime_error);
 }
 
 TEST_F(RunLocks, OfAnotherHostGiveWayWhereTheyAreOld) {

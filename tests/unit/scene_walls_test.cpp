@@ -284,6 +284,32 @@ TEST(SceneWalls, AGapWithinAWallCountsAsOneBetweenTwo) {
   EXPECT_EQ(warnings(line(curve + "]")), std::vector<std::string>{});
 }
 
+TEST(SceneWalls, AWallOfShortPiecesHasNoGaps) {
+  const auto warnings = [](const std::vector<std::string>& lines, const std::string& wet) {
+    std::string walls;
+    for (const std::string& points : lines)
+      walls += "[[wall]]\nshape = \"polyline\"\npoints = [" + points + "]\nwet = \"" + wet + "\"\n";
+    const Case config = scene_case("domain = {low = [-9, -9], high = [9, 9]}\n" + unit_square + walls);
+    return report_scene(config, config).warnings;
+  };
+  for (const char* wet : {"left", "both"}) {
+    // One piece of 1.5 dp between long ones, in line with them or not, and two of 1.1 dp.
+    EXPECT_EQ(warnings({"[1, 0], [2, 0]", "[2, 0], [2.075, 0]", "[2.075, 0], [3, 0]"}, wet),
+              std::vector<std::string>{});
+    EXPECT_EQ(warnings({"[1, 0], [2, 0]", "[2, 0], [2.06, 0.045]", "[2.06, 0.045], [3, 0.045]"}, wet),
+              std::vector<std::string>{});
+    EXPECT_EQ(warnings({"[1, 0], [2, 0.2]", "[2, 0.2], [2.06, 0.155]", "[2.06, 0.155], [3, 0.4]"}, wet),
+              std::vector<std::string>{});
+    EXPECT_EQ(
+        warnings({"[1, 0.5], [2, 0]", "[2, 0], [2.05, -0.02]", "[2.05, -0.02], [2.098, 0]", "[2.098, 0], [3, 0.5]"},
+                 wet),
+        std::vector<std::string>{});
+    // A slot of 1.5 dp between walls is one also with a bottom.
+    expect_mistake(warnings({"[2, 0.5], [2, 0]", "[2, 0], [2.075, 0]", "[2.075, 0], [2.075, 0.5]"}, wet),
+                   "the gap between the walls \"wall_1\" and \"wall_3\" is 1.5 dp wide");
+  }
+}
+
 TEST(SceneWalls, AGapThatOpensInTimeIsToldWithTheTime) {
   const auto warnings = [](const std::string& body, const std::string& motion) {
     const Case config =

@@ -13,6 +13,7 @@ namespace impinge {
 struct MemoryNeed {
   double particles = 0.0;  ///< of every type, on all ranks; exact up to some 100,000, else from a sample
   double rank = 0.0;       ///< arrays of particles, pairs, matrix and cells, and libraries [bytes]
+  double graph = 0.0;      ///< besides, where the cells are partitioned: the graph, and METIS with it [bytes]
 };
 
 /// `particles`: how many a checkpoint holds; 0: those of the case's start. Allocates little; not collective.
