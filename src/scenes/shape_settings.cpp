@@ -183,10 +183,11 @@ std::shared_ptr<const Shape<3>> scaled_shape(const ShapeSettings& shape, std::ve
   if (shape.shape == ShapeType::sphere)
     return std::make_shared<const Sphere>(scaling_of<3>(shape)(vector_of<3>(shape.center)), shape.scale * shape.radius);
   if (shape.shape == ShapeType::cylinder || shape.shape == ShapeType::cone) {
-    const std::optional<Facets> facets = scaled_facets(shape, mistakes);
-    std::vector<std::string> warnings;
-    std::optional<Mesh> mesh = facets ? make_mesh(*facets, mistakes, warnings) : std::nullopt;
-    return mesh ? std::make_shared<const Mesh>(std::move(*mesh)) : nullptr;
+    if (!scaled_facets(shape, mistakes)) return nullptr;
+    const Transform<3> scaling = scaling_of<3>(shape);
+    const double end_radius = shape.shape == ShapeType::cone ? shape.end_radius : shape.radius;
+    return std::make_shared<const Frustum>(scaling(vector_of<3>(shape.begin)), scaling(vector_of<3>(shape.end)),
+                                           shape.scale * shape.radius, shape.scale * end_radius);
   }
   if (shape.shape != ShapeType::box) {
     mistakes.push_back("circles and polygons have two dimensions");

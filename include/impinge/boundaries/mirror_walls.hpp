@@ -22,7 +22,9 @@ namespace impinge {
 /// the same for all that see them. At a curved face each pair has its own: at the plane that touches the face at q, the
 /// point of the wall nearest to (d_j x_i + d_i x_j)/(d_i + d_j), with d the distances to the wall. Its share in the
 /// sums is that of a ray tube, J = (l_1 + l_2)/(l_1 + l_2 + 2 k l_1 l_2/cos a), with l the lengths of the two parts of
-/// the path, a its angle to the normal, and k the curvature, positive where the wall bulges into the fluid.
+/// the path, a its angle to the normal, and k the curvature, positive where the wall bulges into the fluid. In three
+/// dimensions a tube spreads in the plane of incidence, with k_1, and across it, with k_2 and cos a in the place of
+/// 1/cos a: J is the product of both.
 template <int Dim>
 class MirrorWalls final : public PairFilter<Dim> {
  public:
