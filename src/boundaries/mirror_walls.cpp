@@ -128,9 +128,33 @@ void MirrorWalls<Dim>::append_images(Particles<Dim>& particles) {
     for (const int f : faces_.around(position_[self]))
       if (faces_.is_behind(f, position_[self])) hides[static_cast<std::size_t>(f)] = 1;
   }
-  const auto is_hiding = [&](int f) { return hides[static_cast<std::size_t>(f)] != 0; };
-  for (std::size_t i = 0; i < tested_.size(); ++i)
-    tested_[i] = faces_.has_tests(position_[i]) || std::ranges::any_of(faces_.around(position_[i]), is_hiding) ? 1 : 0;
+  near_.clear();
+  near_start_.assign(1, 0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(first_image_); ++i) {
+    faces_.append_near(position_[i], near_);
+    near_start_.push_back(static_cast<int>(near_.size()));
+    if (i >= tested_.size()) continue;
+    const std::span<const NearFace> near = this->near(i);
+    const auto is_hiding = [&](const NearFace& face) { return hides[static_cast<std::size_t>(face.face)] != 0; };
+    tested_[i] = faces_.has_tests(position_[i], near) || std::ranges::any_of(near, is_hiding) ? 1 : 0;
+  }
+}
+
+template <int Dim>
+std::span<const NearFace> MirrorWalls<Dim>::near(std::size_t i) const {
+  const auto first = static_cast<std::size_t>(near_start_[i]), last = static_cast<std::size_t>(near_start_[i + 1]);
+  return std::span(near_).subspan(first, last - first);
+}
+
+// The faces that a path between two particles may meet beside those that it is reflected at.
+template <int Dim>
+std::vector<int> MirrorWalls<Dim>::between(std::size_t i, std::size_t j, double length, bool is_straight) const {
+  std::vector<int> faces;
+  for (const NearFace& one : near(i)) {
+    const auto other = std::ranges::find(near(j), one.face, &NearFace::face);
+    if (other != near(j).end() && faces_.may_meet(one, *other, length, is_straight)) faces.push_back(one.face);
+  }
+  return faces;
 }
 
 // Where curved faces are nearest to the particles before them, and to images of these at flat faces that meet a curved
@@ -189,8 +213,10 @@ double MirrorWalls<Dim>::own_factor(int i, int j, int face, const Meeting<Dim>& 
   const Reflection<Dim> reflection = reflection_at(meeting.plane);
   const Vector<Dim>&here = position_[self], &there = position_[other];
   const MirrorPath path = MirrorPath{}.then(face);
-  return id_[self] <= id_[other] ? faces_.path_factor(here, reflection.of_position(there), path, meeting.plane)
-                                 : faces_.path_factor(there, reflection.of_position(here), path, meeting.plane);
+  const Vector<Dim> image = reflection.of_position(there);
+  const std::vector<int> faces = between(self, other, norm(image - here), false);
+  return id_[self] <= id_[other] ? faces_.path_factor(here, image, path, meeting.plane, faces)
+                                 : faces_.path_factor(there, reflection.of_position(here), path, meeting.plane, faces);
 }
 
 template <int Dim>
@@ -321,9 +347,12 @@ template <int Dim>
 double MirrorWalls<Dim>::factor(int i, int j) const {
   const auto self = static_cast<std::size_t>(i), other = static_cast<std::size_t>(j);
   const Vector<Dim>& here = position_[self];
-  if (j < first_image_)
-    return id_[self] <= id_[other] ? faces_.line_factor(here, position_[other])
-                                   : faces_.line_factor(position_[other], here);
+  const double length = norm(position_[other] - here);
+  if (j < first_image_) {
+    const std::vector<int> faces = between(self, other, length, true);
+    return id_[self] <= id_[other] ? faces_.line_factor(here, position_[other], faces)
+                                   : faces_.line_factor(position_[other], here, faces);
+  }
   const std::size_t image = other - static_cast<std::size_t>(first_image_);
   const auto original = static_cast<std::size_t>(original_[image]);
   const Way& to = way(image);
@@ -340,10 +369,11 @@ double MirrorWalls<Dim>::factor(int i, int j) const {
   }
   if constexpr (Dim == 3)
     if (to.path.count > 1) end += displacement * spacing_ * Vector<3>{{0.36, 0.48, 0.8}};
-  if (to.path.count == 1) return faces_.path_factor(begin, end, to.path, {});
+  const std::vector<int> faces = between(self, original, length, false);
+  if (to.path.count == 1) return faces_.path_factor(begin, end, to.path, {}, faces);
   double sum = 0.0;
   for (const MirrorPath& path : same_paths(faces_, to.path))
-    sum += faces_.path_factor(begin, end, backwards ? path.reversed() : path, {});
+    sum += faces_.path_factor(begin, end, backwards ? path.reversed() : path, {}, faces);
   return std::min(sum, 1.0);
 }
 

@@ -340,13 +340,25 @@ bool WallFaces<2>::is_behind(int face, const Vector<2>& x) const {
   return at(face).is_open && height(face, x) <= 0.0 && distance(face, x) < reach_;
 }
 
-bool WallFaces<2>::has_tests(const Vector<2>& x) const {
+void WallFaces<2>::append_near(const Vector<2>& x, std::vector<NearFace>& near) const {
+  for (const int f : around(x)) {
+    const double apart = distance(f, x);
+    if (apart < 2.0 * reach_) near.push_back({f, apart, height(f, x)});
+  }
+}
+
+// A path that meets a face is as long as the distances of its ends, or longer.
+bool WallFaces<2>::may_meet(const NearFace& one, const NearFace& other, double length, bool) const {
+  return one.distance + other.distance < length + 2.0 * fade * spacing_;
+}
+
+bool WallFaces<2>::has_tests(const Vector<2>& x, std::span<const NearFace> faces) const {
   if (vertices_.empty() && cell_.empty()) return false;
   constexpr std::size_t most = 2;  // faces that need no tests
   std::array<int, most> near{};
   std::size_t found = 0;
-  for (const int f : around(x)) {
-    if (distance(f, x) >= 2.0 * reach_) continue;
+  for (const NearFace& face : faces) {
+    const int f = face.face;
     if (found == most || at(f).partner >= 0) return true;
     near[found++] = f;
     for (int end = 0; end < 2 && at(f).vertex[0] >= 0; ++end) {
@@ -390,12 +402,12 @@ bool WallFaces<2>::crosses(int face, const Vector<2>& from, const Vector<2>& to,
 
 // What is left of a line up to a share of it, beside the faces and vertices that it begins or ends at.
 double WallFaces<2>::leg_factor(const Vector<2>& from, const Vector<2>& to, double since, double until,
-                                std::span<const int> skipped, std::span<const int> skipped_vertices) const {
+                                std::span<const int> near, std::span<const int> skipped,
+                                std::span<const int> skipped_vertices) const {
   const Vector<2> way = to - from;
   const double length = norm(way);
   if (length == 0.0) return 1.0;
   const Vector<2> end_point = from + until * way;
-  const std::span<const int> near = around(from);
   double factor = 1.0;
   constexpr std::size_t most = 8;
   std::array<int, most> faded_at;  // vertices
@@ -438,8 +450,8 @@ double WallFaces<2>::leg_factor(const Vector<2>& from, const Vector<2>& to, doub
   return factor;
 }
 
-double WallFaces<2>::line_factor(const Vector<2>& from, const Vector<2>& to) const {
-  return leg_factor(from, to, 0.0, 1.0, {}, {});
+double WallFaces<2>::line_factor(const Vector<2>& from, const Vector<2>& to, std::span<const int> faces) const {
+  return leg_factor(from, to, 0.0, 1.0, faces, {}, {});
 }
 
 bool WallFaces<2>::find_foot(int face, const Vector<2>& x, Foot<2>& foot) const {
@@ -463,7 +475,7 @@ Meeting<2> WallFaces<2>::meeting(int face, const Vector<2>& one, const Foot<2>& 
 }
 
 double WallFaces<2>::path_factor(const Vector<2>& from, const Vector<2>& image, const MirrorPath& path,
-                                 const Face<2>& plane) const {
+                                 const Face<2>& plane, std::span<const int> faces) const {
   Vector<2> begin = from, end = image;
   double factor = 1.0, since = 0.0;
   double travelled = 0.0;              // from the path's begin to that of the leg
@@ -498,7 +510,7 @@ double WallFaces<2>::path_factor(const Vector<2>& from, const Vector<2>& image, 
     }
     if (factor == 0.0 || !is_inside) return 0.0;
     skipped[1] = f;
-    factor *= leg_factor(begin, end, since, share, skipped, {passed.data(), n_passed});
+    factor *= leg_factor(begin, end, since, share, faces, skipped, {passed.data(), n_passed});
     if (factor == 0.0) return 0.0;
     begin = begin + share * way;
     travelled += share * length;
@@ -509,7 +521,7 @@ double WallFaces<2>::path_factor(const Vector<2>& from, const Vector<2>& image, 
     n_passed -= before;
     since = least_share;
   }
-  return factor * leg_factor(begin, end, since, 1.0, skipped, {passed.data(), n_passed});
+  return factor * leg_factor(begin, end, since, 1.0, faces, skipped, {passed.data(), n_passed});
 }
 
 // The first face that a way meets from its wet side, or a line from either side.

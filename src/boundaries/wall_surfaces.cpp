@@ -331,17 +331,32 @@ bool WallFaces<3>::is_behind(int face, const Vector<3>& x) const {
   return point.height <= 0.0 && point.beyond == 0.0;
 }
 
-bool WallFaces<3>::has_tests(const Vector<3>& x) const {
+void WallFaces<3>::append_near(const Vector<3>& x, std::vector<NearFace>& near) const {
+  for (const int f : around(x)) {
+    const double apart = distance(f, x);
+    if (apart < 2.0 * reach_) near.push_back({f, apart, height(f, x)});
+  }
+}
+
+// A path that meets a face is as long as the distances of its ends, or longer. A straight one between places before a
+// face that bulges little does not meet it.
+bool WallFaces<3>::may_meet(const NearFace& one, const NearFace& other, double length, bool is_straight) const {
+  if (one.distance + other.distance >= length + 2.0 * fade * spacing_) return false;
+  if (!is_straight || is_flat(one.face)) return true;
+  return !(one.height > 0.0 && other.height > 0.0 && bulge(one.face) * spacing_ <= gentle);
+}
+
+bool WallFaces<3>::has_tests(const Vector<3>& x, std::span<const NearFace> faces) const {
   const Cell* cell = cell_at(x);
   if (!cell) return false;
   constexpr std::size_t most = 3;  // faces that need no tests
   std::array<int, most> near{};
   std::size_t found = 0;
   bool any_wall = false;
-  for (const int f : cell->faces) {
-    if (distance(f, x) >= 2.0 * reach_) continue;
+  for (const NearFace& face : faces) {
+    const int f = face.face;
     if (found == most || at(f).partner >= 0) return true;
-    if (!is_flat(f) && at(f).patch->largest_curvature() * spacing_ > gentle) return true;
+    if (!is_flat(f) && bulge(f) * spacing_ > gentle) return true;
     any_wall |= at(f).patch != nullptr;
     near[found++] = f;
   }
@@ -390,7 +405,8 @@ double WallFaces<3>::free_share(int face, const Vector<3>& from, const Vector<3>
     return holds(face, from + share * (to - from)) ? 0.0 : 1.0;
   }
   const Vector<3> end = from + until * (to - from);
-  if (distance(face, from + 0.5 * (end - from)) > reach_) return 1.0;
+  const double limit = 0.5 * norm(end - from) + on_curve * spacing_;  // for a face that it meets
+  if (data.patch->distance(motions_.at_rest(data.motion, from + 0.5 * (end - from)), limit) >= limit) return 1.0;
   const double first = nearest(face, from).height, last = nearest(face, end).height;
   if ((first > 0.0) != (last > 0.0)) return holds(face, from + first / (first - last) * (end - from)) ? 0.0 : 1.0;
   if (first <= 0.0) return 1.0;
@@ -403,14 +419,16 @@ double WallFaces<3>::free_share(int face, const Vector<3>& from, const Vector<3>
 
 // What is left of a line from one share of it to another, beside the faces and edges that it begins or ends at.
 double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, double since, double until,
-                                const Cell& near, std::array<int, 2> skipped, const PassedEdges& passed) const {
+                                std::span<const int> near, std::array<int, 2> skipped,
+                                const PassedEdges& passed) const {
   const double width = fade * spacing_, joined = on_curve * spacing_;
   if (from == to) return 1.0;
   bool passes = false;
   Passing least{.apart = width, .share = 0.0, .place = {}};
-  for (const int e : near.edges) {
+  const Cell* cell = near.empty() ? nullptr : cell_at(from);
+  for (const int e : cell ? std::span<const int>(cell->edges) : std::span<const int>()) {
     const EdgeData& edge = edges_[static_cast<std::size_t>(e)];
-    if (!edge.fades || edge.is_covered) continue;
+    if (!edge.fades || edge.is_covered || std::ranges::find(near, edge.face) == near.end()) continue;
     const Passing here = passing(from, to, edge);
     if (here.apart >= least.apart || here.share <= 0.0 || here.share >= until || passed.holds(here.place, joined))
       continue;
@@ -419,7 +437,7 @@ double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, doub
   }
   double factor = 1.0;
   bool is_blocked = false;
-  for (const int f : near.faces) {
+  for (const int f : near) {
     if (!at(f).patch || f == skipped[0] || f == skipped[1]) continue;
     if (at(f).partner >= 0 && (at(f).partner == skipped[0] || at(f).partner == skipped[1])) continue;
     const double left = free_share(f, from, to, since, until);
@@ -436,13 +454,12 @@ double WallFaces<3>::leg_factor(const Vector<3>& from, const Vector<3>& to, doub
   return passes ? factor * faded(is_blocked ? -least.apart : least.apart, width) : factor;
 }
 
-double WallFaces<3>::line_factor(const Vector<3>& from, const Vector<3>& to) const {
-  const Cell* cell = cell_at(from);
-  return cell ? leg_factor(from, to, 0.0, 1.0, *cell, {-1, -1}, {}) : 1.0;
+double WallFaces<3>::line_factor(const Vector<3>& from, const Vector<3>& to, std::span<const int> faces) const {
+  return leg_factor(from, to, 0.0, 1.0, faces, {-1, -1}, {});
 }
 
 double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, const MirrorPath& path,
-                                 const Face<3>& plane) const {
+                                 const Face<3>& plane, std::span<const int> faces) const {
   const Cell* cell = cell_at(from);
   if (!cell) return 1.0;
   const double width = fade * spacing_;
@@ -480,7 +497,7 @@ double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, 
     if (!is_on && (apart >= width || ends_inside)) return 0.0;
     factor *= faded(is_on ? apart : -apart, width);
     skipped[1] = f;
-    factor *= leg_factor(begin, end, since, (1.0 - at_end) * share, *cell, skipped, passed);
+    factor *= leg_factor(begin, end, since, (1.0 - at_end) * share, faces, skipped, passed);
     since = at_end;
     if (factor == 0.0) return 0.0;
     begin = hit;
@@ -488,7 +505,7 @@ double WallFaces<3>::path_factor(const Vector<3>& from, const Vector<3>& image, 
     skipped = {f, -1};
     passed.drop(before);
   }
-  return factor * leg_factor(begin, end, since, 1.0, *cell, skipped, passed);
+  return factor * leg_factor(begin, end, since, 1.0, faces, skipped, passed);
 }
 
 // The first face that a way meets from its wet side, or an open surface from either side.

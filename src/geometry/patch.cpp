@@ -161,20 +161,26 @@ void Patch::find_normals() {
     corner_bending_[v] = 1.0 / whole[v] * corner_bending_[v];
     double square = 0.0;
     for (const Vector<3>& row : corner_bending_[v].row) square += dot(row, row);
-    largest_curvature_ = std::max(largest_curvature_, std::sqrt(square));
+    // The principal curvatures: the eigenvalues beside 0, of the normal.
+    const double sum = trace(corner_bending_[v]), root = std::sqrt(std::max(2.0 * square - sum * sum, 0.0));
+    front_bulge_ = std::max(front_bulge_, 0.5 * (sum + root));
+    back_bulge_ = std::max(back_bulge_, 0.5 * (root - sum));
   }
 }
 
-Patch::Place Patch::nearest_facet(const Vector<3>& x, double square) const {
+// `first`: a facet to begin with; -1: any.
+Patch::Place Patch::nearest_facet(const Vector<3>& x, double square, int first) const {
   Place best;
   best.square = square;
-  tree_.nearest(x, square, [&](int f) {
+  const auto use = [&](int f) {
     const FacetPoint at = nearest_on_facet(corners(f), x);
     const Vector<3> off = at.point - x;
     const double here = dot(off, off);
-    if (here < best.square) best = {f, at, here};
+    if (here < best.square || (here == best.square && f < best.facet)) best = {f, at, here};
     return best.square;
-  });
+  };
+  if (first >= 0) use(first);
+  tree_.nearest(x, best.square, use);
   return best;
 }
 
@@ -201,7 +207,7 @@ PatchPoint Patch::nearest(const Vector<3>& x) const {
   double height = 0.0, beyond = 0.0;
   Place place, last;
   for (int k = 0; k < most; ++k) {
-    place = nearest_facet(aim, infinity);
+    place = nearest_facet(aim, infinity, place.facet);
     const Facet& facet = facet_[static_cast<std::size_t>(place.facet)];
     normal = {};
     bending = {};
@@ -222,12 +228,13 @@ PatchPoint Patch::nearest(const Vector<3>& x) const {
     aim = place.at.point + rest;
     // At the patch's edge the foot goes no farther.
     if (k > 0 && norm(place.at.point - last.at.point) <= 1e-3 * beyond) {
-      const Vector<3> step = nearest_facet(place.at.point + 1e-3 * rest, infinity).at.point - place.at.point;
+      const Vector<3> step =
+          nearest_facet(place.at.point + 1e-3 * rest, infinity, place.facet).at.point - place.at.point;
       if (norm(step) < 0.5e-3 * beyond) return {point + rest, normal, height, beyond, bending};
     }
     last = place;
   }
-  const Vector<3> step = nearest_facet(place.at.point + rest, infinity).at.point - place.at.point;
+  const Vector<3> step = nearest_facet(place.at.point + rest, infinity, place.facet).at.point - place.at.point;
   const bool is_at_edge = norm(step) < 0.5 * beyond;
   return {point + rest, normal, height, is_at_edge ? beyond : 0.0, bending};
 }

@@ -48,7 +48,8 @@ void leave_out_gaps(double spacing, State<Dim>& state) {
     if (!particles.free_surface[i] || size == 0.0) continue;
     const Vector<Dim>& from = particles.position[i];
     const Vector<Dim> to = from + 1.5 * spacing / size * state.asymmetry[i];
-    if (state.walls.faces().line_factor(from, to) == 0.0) particles.free_surface[i] = 0;
+    if (state.walls.faces().line_factor(from, to, state.walls.faces().around(from)) == 0.0)
+      particles.free_surface[i] = 0;
   }
   state.refresh(particles.free_surface);
 }

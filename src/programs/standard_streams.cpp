@@ -13,31 +13,18 @@
 namespace impinge {
 namespace {
 
-struct Stream {
-  int descriptor;
-  int failure = 0;  // errno of the first write that failed
-};
+int failure = 0;  // errno of the first write to standard output that failed
 
-Stream output{STDOUT_FILENO}, errors{STDERR_FILENO};
-
-ssize_t write_or_drop(void* cookie, const char* text, std::size_t size) {
-  Stream& stream = *static_cast<Stream*>(cookie);
-  for (std::size_t written = 0; stream.failure == 0 && written < size;) {
-    const ssize_t now = write(stream.descriptor, text + written, size - written);
+ssize_t write_or_drop(void*, const char* text, std::size_t size) {
+  for (std::size_t written = 0; failure == 0 && written < size;) {
+    const ssize_t now = write(STDOUT_FILENO, text + written, size - written);
     if (now >= 0) {
       written += static_cast<std::size_t>(now);
     } else if (errno != EINTR) {
-      stream.failure = errno;
+      failure = errno;
     }
   }
   return static_cast<ssize_t>(size);
-}
-
-std::FILE* tolerant(Stream& stream, int buffering, std::FILE* otherwise) {
-  std::FILE* const file = fopencookie(&stream, "w", {nullptr, write_or_drop, nullptr, nullptr});
-  if (!file) return otherwise;
-  std::setvbuf(file, nullptr, buffering, BUFSIZ);
-  return file;
 }
 
 }  // namespace
@@ -47,16 +34,19 @@ void prepare_streams() {
   while (next >= 0 && next <= STDERR_FILENO) next = open("/dev/null", O_RDWR);
   if (next >= 0) close(next);
   std::signal(SIGXFSZ, SIG_IGN);
-  stdout = tolerant(output, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, stdout);
-  stderr = tolerant(errors, _IONBF, stderr);
+  // Standard error stays as it is: Open MPI asks for its descriptor, and errno would no longer tell why a write failed.
+  if (std::FILE* const file = fopencookie(nullptr, "w", {nullptr, write_or_drop, nullptr, nullptr})) {
+    std::setvbuf(file, nullptr, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, BUFSIZ);
+    stdout = file;
+  }
 }
 
 bool flush_output(const char* program) {
   std::fflush(stdout);
-  if (output.failure == 0) return true;
+  if (failure == 0) return true;
   static bool told = false;
   if (!std::exchange(told, true))
-    fmt::print(stderr, "{}: cannot write to standard output: {}\n", program, std::strerror(output.failure));
+    fmt::print(stderr, "{}: cannot write to standard output: {}\n", program, std::strerror(failure));
   return false;
 }
 

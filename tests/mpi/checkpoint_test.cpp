@@ -156,11 +156,11 @@ high = [0.4, 0.3]
 TEST_F(Restart, ContinuesBetweenSurfacesThatMove) {
   expect_the_same_run<3>(parse_case({{"case.toml", R"(geometry = "scene"
 dimension = 3
-particles.spacing = 0.05
+particles.spacing = 0.07
 fluid.gravity = [0, 0, -9.81]
 time = {end = 1.0, dt = 4e-3}
 pressure.tolerance = 1e-12
-domain = {low = [-0.6, -0.6, -0.2], high = [0.6, 0.6, 1.4]}
+domain = {low = [-0.65, -0.65, -0.2], high = [0.65, 0.65, 1.4]}
 [[wall]]
 shape = "cylinder"
 begin = [0, 0, 0]
@@ -195,7 +195,7 @@ begin = [0, 0, 0]
 end = [0, 0, 0.35]
 radius = 0.4
 )"}}),
-                         24);
+                         10);
 }
 
 // The first inlet stops and the second starts in between; the outlet swallows a part of what falls.

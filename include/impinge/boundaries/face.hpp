@@ -37,6 +37,13 @@ Reflection<Dim> reflection_at(const Face<Dim>& plane);
 template <int Dim>
 Reflection<Dim> product(const Reflection<Dim>& outer, const Reflection<Dim>& inner);
 
+/// A face near a particle.
+struct NearFace {
+  int face;
+  double distance;  ///< to the face itself, not negative [m]
+  double height;    ///< distance to the face or its continuation, positive on its wet side [m]
+};
+
 /// Where a curved face is nearest to a particle before it.
 template <int Dim>
 struct Foot {

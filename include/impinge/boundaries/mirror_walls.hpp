@@ -115,6 +115,8 @@ class MirrorWalls final : public PairFilter<Dim> {
 
   void find_feet(const Particles<Dim>& particles);
   std::span<const FaceFoot> feet(int i) const;
+  std::span<const NearFace> near(std::size_t i) const;
+  std::vector<int> between(std::size_t i, std::size_t j, double length, bool is_straight) const;
   double own_factor(int i, int j, int face, const Meeting<Dim>& meeting) const;
   void append_paths(int particle, const Vector<Dim>& place, const MirrorPath& path, const Reflection<Dim>& outer);
   int way_of(const MirrorPath& path, const Reflection<Dim>& whole);
@@ -142,6 +144,8 @@ class MirrorWalls final : public PairFilter<Dim> {
   std::vector<Way> ways_;
   std::map<MirrorPath, int> known_;  // ways at flat faces
   std::vector<char> tested_;         // per owned particle
+  std::vector<int> near_start_;      // per particle, halo included
+  std::vector<NearFace> near_;
   std::vector<int> own_start_;
   std::vector<OwnPair> own_;
   std::vector<int> foot_start_;  // per particle, halo and images at flat faces included

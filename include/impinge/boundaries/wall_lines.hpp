@@ -70,13 +70,19 @@ class WallFaces<2> {
 
   /// True for a position on the dry side of a line that is wet on one side, nearer than the reach.
   bool is_behind(int face, const Vector<2>& x) const;
+  /// Appends the faces nearer to a position than twice the reach.
+  void append_near(const Vector<2>& x, std::vector<NearFace>& near) const;
+  /// True if a path between two particles near a face, straight or reflected elsewhere, may meet the face or pass
+  /// its ends; `length`: of the path [m].
+  bool may_meet(const NearFace& one, const NearFace& other, double length, bool is_straight) const;
   /// False where every line to a neighbour and to an image of one is free.
-  bool has_tests(const Vector<2>& x) const;
-  /// What the walls leave of the straight line between two positions: 1 if it is free, 0 if not [-].
-  double line_factor(const Vector<2>& from, const Vector<2>& to) const;
+  bool has_tests(const Vector<2>& x, std::span<const NearFace> near) const;
+  /// What faces leave of the straight line between two positions: 1 if it is free, 0 if not [-].
+  double line_factor(const Vector<2>& from, const Vector<2>& to, std::span<const int> faces) const;
   /// Likewise of a line that is reflected at the faces of a path; `image`: where it ends if it is unfolded.
   /// `plane`: of a path over an arc, which touches it.
-  double path_factor(const Vector<2>& from, const Vector<2>& image, const MirrorPath& path, const Face<2>& plane) const;
+  double path_factor(const Vector<2>& from, const Vector<2>& image, const MirrorPath& path, const Face<2>& plane,
+                     std::span<const int> faces) const;
 
   /// The way of a particle from where it was before the walls moved to where it shall be: reflected at every face that
   /// it meets, and its velocity with it.
@@ -126,7 +132,7 @@ class WallFaces<2> {
   bool fades(int face, int end) const;
   bool covers(const FaceData& face, const Vector<2>& x) const;
   bool crosses(int face, const Vector<2>& from, const Vector<2>& to, double since, double until) const;
-  double leg_factor(const Vector<2>& from, const Vector<2>& to, double since, double until,
+  double leg_factor(const Vector<2>& from, const Vector<2>& to, double since, double until, std::span<const int> near,
                     std::span<const int> skipped, std::span<const int> skipped_vertices) const;
   bool first_hit(const Vector<2>& from, const Vector<2>& to, int skipped, int& face, double& share) const;
 

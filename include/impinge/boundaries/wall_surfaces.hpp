@@ -69,13 +69,19 @@ class WallFaces<3> {
 
   /// True for a position on the dry side of an open surface that is wet on one side, nearer than the reach.
   bool is_behind(int face, const Vector<3>& x) const;
+  /// Appends the faces nearer to a position than twice the reach.
+  void append_near(const Vector<3>& x, std::vector<NearFace>& near) const;
+  /// True if a path between two particles near a face, straight or reflected elsewhere, may meet the face or pass
+  /// its ends; `length`: of the path [m].
+  bool may_meet(const NearFace& one, const NearFace& other, double length, bool is_straight) const;
   /// False where every line to a neighbour and to an image of one is free.
-  bool has_tests(const Vector<3>& x) const;
-  /// What the walls leave of the straight line between two positions: 1 if it is free, 0 if not [-].
-  double line_factor(const Vector<3>& from, const Vector<3>& to) const;
+  bool has_tests(const Vector<3>& x, std::span<const NearFace> near) const;
+  /// What faces leave of the straight line between two positions: 1 if it is free, 0 if not [-].
+  double line_factor(const Vector<3>& from, const Vector<3>& to, std::span<const int> faces) const;
   /// Likewise of a line that is reflected at the faces of a path; `image`: where it ends if it is unfolded.
   /// `plane`: of a path over a curved face, which touches it.
-  double path_factor(const Vector<3>& from, const Vector<3>& image, const MirrorPath& path, const Face<3>& plane) const;
+  double path_factor(const Vector<3>& from, const Vector<3>& image, const MirrorPath& path, const Face<3>& plane,
+                     std::span<const int> faces) const;
 
   /// The way of a particle from where it was before the walls moved to where it shall be: reflected at every face that
   /// it meets, and its velocity with it.
@@ -118,11 +124,13 @@ class WallFaces<3> {
   void cover_edges();
   const Cell* cell_at(const Vector<3>& x) const;
   std::int64_t key(const std::array<std::int64_t, 3>& cell) const;
+  /// The largest curvature of a face towards its wet side [1/m].
+  double bulge(int face) const { return at(face).patch->bulge(at(face).side > 0.0); }
   PatchPoint nearest(int face, const Vector<3>& x) const;
   double beyond(int face, const Vector<3>& x) const;
   static Passing passing(const Vector<3>& from, const Vector<3>& to, const EdgeData& edge);
   double free_share(int face, const Vector<3>& from, const Vector<3>& to, double since, double until) const;
-  double leg_factor(const Vector<3>& from, const Vector<3>& to, double since, double until, const Cell& near,
+  double leg_factor(const Vector<3>& from, const Vector<3>& to, double since, double until, std::span<const int> near,
                     std::array<int, 2> skipped, const PassedEdges& passed) const;
   bool first_hit(const Vector<3>& from, const Vector<3>& to, int skipped, int& face, double& share) const;
 

@@ -41,8 +41,8 @@ class Patch {
   /// Of a flat patch.
   const Vector<3>& normal() const { return normal_; }
   const Vector<3>& origin() const { return corner_.front(); }
-  /// The largest curvature, not negative [1/m].
-  double largest_curvature() const { return largest_curvature_; }
+  /// The largest curvature towards the side that it faces, or the other; not negative [1/m].
+  double bulge(bool front) const { return front ? front_bulge_ : back_bulge_; }
   const BoxTree& tree() const { return tree_; }
   const std::vector<Vector<3>>& points() const { return corner_; }
   const std::vector<Facet>& facets() const { return facet_; }
@@ -63,7 +63,7 @@ class Patch {
             corner_[static_cast<std::size_t>(f[2])]};
   }
   void find_normals();
-  Place nearest_facet(const Vector<3>& x, double square) const;
+  Place nearest_facet(const Vector<3>& x, double square, int first = -1) const;
 
   std::vector<Vector<3>> corner_, corner_normal_;
   std::vector<Matrix<3>> corner_bending_;
@@ -71,7 +71,7 @@ class Patch {
   BoxTree tree_;
   bool flat_ = true;
   Vector<3> normal_;
-  double largest_curvature_ = 0.0;
+  double front_bulge_ = 0.0, back_bulge_ = 0.0;
 };
 
 }  // namespace impinge

@@ -1,10 +1,10 @@
 #pragma once
-// Standard streams that may be gone: closed, a full disk, a terminal that was closed.
+// Standard streams that may be gone: closed, a full disk, a reader that has gone.
 
 namespace impinge {
 
-/// Opens closed standard streams, so that no file of a run becomes one of them, and lets standard output and error drop
-/// what they cannot write: a run goes on without. A file beyond its largest size (`ulimit -f`) is an error of the
+/// Opens closed standard streams, so that no file of a run becomes one of them, and lets standard output drop what it
+/// cannot write: a run goes on without. A file beyond its largest size (`ulimit -f`) is an error of the
 /// write, not a signal. To be called first in main.
 void prepare_streams();
 
