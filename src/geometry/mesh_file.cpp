@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cstdint>
@@ -19,6 +20,15 @@ std::string small_letters(std::string_view text) {
   return result;
 }
 
+/// Opens nothing: a surface's file may name others, of materials, which make no walls.
+class NoFiles final : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
 }  // namespace
 
 bool is_mesh_file(std::string_view name) {
@@ -28,6 +38,7 @@ bool is_mesh_file(std::string_view name) {
 
 std::optional<Facets> read_facets(std::string_view name, std::string_view content, std::vector<std::string>& mistakes) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // owned by the importer
   // Points, lines, colours and the like do not make walls; points are joined later.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const std::string ending = small_letters(name.substr(name.rfind('.') + 1));

@@ -2,10 +2,10 @@
 // that it takes reads back to the same case. What --check tells of the case's scene can be told.
 //
 // The input is a case file and what belongs to it, parted by lines of "#--": a part that begins with the line "#set"
-// has a setting in each further line; the other parts are the files case.toml, 1.toml, 2.toml, ..., one that begins
-// with
-// "#csv" is 1.csv, 2.csv, ...
+// has a setting in each further line; the other parts are the files case.toml, 1.toml, 2.toml, ...; what stands after a
+// line "#csv", "#stl", "#obj" or "#ply" is 1.csv, 2.stl, ...
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -62,12 +62,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!files.empty() && part.starts_with("#set\n")) {
       std::istringstream lines{std::string(part.substr(5))};
       for (std::string line; std::getline(lines, line);) settings.push_back(line);
-    } else {
-      const std::string number = std::to_string(files.size());
-      files.push_back(directory.path() / (files.empty()                ? "case.toml"
-                                          : part.starts_with("#csv\n") ? number + ".csv"
-                                                                       : number + ".toml"));
+    } else if (files.empty()) {
+      files.push_back(directory.path() / "case.toml");
       std::ofstream(files.back(), std::ios::binary) << part;
+    } else {
+      constexpr std::string_view endings[] = {"csv", "stl", "obj", "ply"};
+      const bool is_named = part.starts_with('#') && part.substr(4, 1) == "\n" &&
+                            std::ranges::find(endings, part.substr(1, 3)) != std::ranges::end(endings);
+      const std::string ending(is_named ? part.substr(1, 3) : "toml");
+      files.push_back(directory.path() / (std::to_string(files.size()) + "." + ending));
+      std::ofstream(files.back(), std::ios::binary) << (is_named ? part.substr(5) : part);
     }
   }
   try {

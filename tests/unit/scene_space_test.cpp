@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -11,6 +12,7 @@
 
 #include "impinge/cases/case.hpp"
 #include "impinge/core/errors.hpp"
+#include "impinge/geometry/mesh_file.hpp"
 #include "impinge/scenes/scenes.hpp"
 
 namespace impinge {
@@ -187,6 +189,18 @@ TEST_F(MeshFile, MayBeObjOrPly) {
     EXPECT_NEAR(scene.walls.at(0).surface->area(), 1.0, 1e-6) << name;
     EXPECT_FALSE(scene.walls[0].surface->closed());
   }
+}
+
+// Materials make no walls: their file, which may be a pipe, is not opened.
+TEST_F(MeshFile, OpensNoFileThatItNames) {
+  const std::string path = write("a.mtl", "newmtl a\n");
+  const int events = inotify_init1(IN_NONBLOCK);
+  ASSERT_GE(inotify_add_watch(events, path.c_str(), IN_OPEN), 0);
+  std::vector<std::string> mistakes;
+  EXPECT_TRUE(read_facets("a.obj", "mtllib " + path + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", mistakes));
+  char event[4096];
+  EXPECT_EQ(read(events, event, sizeof event), -1);
+  close(events);
 }
 
 TEST_F(MeshFile, ThatIsDamagedIsToldByItsName) {
