@@ -44,7 +44,7 @@ std::vector<std::string_view> parts_of(std::string_view text) {
 
 void expect_round_trip(const Case& config) {
   try {
-    const Case again = parse_case({{"resolved.toml", config.resolved_text}});
+    const Case again = parse_stored({"resolved.toml", config.resolved_text});
     if (again.resolved_text != config.resolved_text)
       fail("another case comes back:\n" + config.resolved_text + "\n" + again.resolved_text);
   } catch (const InputError& error) {
