@@ -20,6 +20,20 @@ std::string small_letters(std::string_view text) {
   return result;
 }
 
+/// What is wrong with a PLY file before its points; assimp has no end of some that are wrong.
+std::string problem_of_ply(std::string_view content) {
+  constexpr std::string_view words[] = {"ply", "format", "comment", "obj_info", "element", "property", "end_header"};
+  for (int line = 1; !content.empty(); ++line) {
+    const std::size_t end = content.find('\n');
+    const std::string_view text = content.substr(0, end), word = text.substr(0, text.find_first_of(" \r"));
+    if (std::ranges::find(words, word) == std::ranges::end(words))
+      return fmt::format("line {} is none of the header of a PLY file; allowed: {}", line, fmt::join(words, ", "));
+    if (word == "end_header") return "";
+    content.remove_prefix(end == content.npos ? content.size() : end + 1);
+  }
+  return "there is no end_header";
+}
+
 /// Opens nothing: a surface's file may name others, of materials, which make no walls.
 class NoFiles final : public Assimp::IOSystem {
  public:
@@ -37,11 +51,15 @@ bool is_mesh_file(std::string_view name) {
 }
 
 std::optional<Facets> read_facets(std::string_view name, std::string_view content, std::vector<std::string>& mistakes) {
+  const std::string ending = small_letters(name.substr(name.rfind('.') + 1));
+  if (const std::string problem = ending == "ply" ? problem_of_ply(content) : ""; !problem.empty()) {
+    mistakes.push_back(fmt::format("cannot be read as a surface: {}", problem));
+    return {};
+  }
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // owned by the importer
   // Points, lines, colours and the like do not make walls; points are joined later.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const std::string ending = small_letters(name.substr(name.rfind('.') + 1));
   const aiScene* scene = importer.ReadFileFromMemory(
       content.data(), content.size(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices,
       ending.c_str());

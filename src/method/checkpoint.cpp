@@ -18,6 +18,7 @@ std::optional<double> largest(const std::string& name) {
   constexpr double exact = 9007199254740992.0;  // up to there every integer is a double
   if (name == "limit") return static_cast<double>(step_limit_names.size() - 1);
   if (name == "iterations" || name.starts_with("coarse_")) return std::numeric_limits<int>::max();
+  if (name.starts_with("outlet_")) return exact;
   for (const char* count : {"step", "particles", "fluid", "in", "out", "lost", "next_id"})
     if (name == count) return exact;
   return {};

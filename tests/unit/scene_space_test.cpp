@@ -191,6 +191,15 @@ TEST_F(MeshFile, MayBeObjOrPly) {
   }
 }
 
+TEST_F(MeshFile, WithAWrongHeaderIsRefused) {
+  std::vector<std::string> mistakes;
+  EXPECT_FALSE(read_facets("a.ply", "ply\nformat ascii 1.0\n[[time]]\nend = 1\n", mistakes));
+  EXPECT_FALSE(read_facets("a.ply", "ply\nformat ascii 1.0\n", mistakes));
+  ASSERT_EQ(mistakes.size(), 2u);
+  EXPECT_NE(mistakes[0].find("line 3 is none of the header of a PLY file"), std::string::npos) << mistakes[0];
+  EXPECT_NE(mistakes[1].find("there is no end_header"), std::string::npos) << mistakes[1];
+}
+
 // Materials make no walls: their file, which may be a pipe, is not opened.
 TEST_F(MeshFile, OpensNoFileThatItNames) {
   const std::string path = write("a.mtl", "newmtl a\n");
