@@ -13,7 +13,8 @@ int MPI_Init(int* argc, char*** argv) {
 // Open MPI unloads its modules at the end; a leak of an unloaded one could not be told from others.
 int dlclose(void*) { return 0; }
 
-/// Open MPI with what it is made of; HDF5, which keeps the memory of an object whose header it cannot read.
+/// Open MPI with what it is made of; HDF5, which keeps the memory of an object whose header it cannot read; assimp,
+/// which keeps that of a surface it gives up.
 const char* __lsan_default_suppressions() {
   return "leak:libmpi.so\n"
          "leak:libopen-rte.so\n"
@@ -21,7 +22,8 @@ const char* __lsan_default_suppressions() {
          "leak:libpmix.so\n"
          "leak:libmca_\n"
          "leak:/openmpi/lib/\n"
-         "leak:libhdf5_openmpi.so\n";
+         "leak:libhdf5_openmpi.so\n"
+         "leak:libassimp.so\n";
 }
 
 /// HDF5 asks for as much memory as a damaged file says, and does without.
