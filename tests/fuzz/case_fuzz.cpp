@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::ofstream(files.back(), std::ios::binary) << part;
     } else {
       constexpr std::string_view endings[] = {"csv", "stl", "obj", "ply"};
-      const bool is_named = part.starts_with('#') && part.substr(4, 1) == "\n" &&
+      const bool is_named = part.size() > 4 && part[0] == '#' && part[4] == '\n' &&
                             std::ranges::find(endings, part.substr(1, 3)) != std::ranges::end(endings);
       const std::string ending(is_named ? part.substr(1, 3) : "toml");
       files.push_back(directory.path() / (std::to_string(files.size()) + "." + ending));
