@@ -110,7 +110,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
            "shifting.coefficient and u_ref dt/dp; 0: none do",
            {.unit = "dp", .range = from_to(0, 1)});
   keys.add("shifting.correct_velocity", s.shifting.correct_velocity,
-           "a shifted particle takes the velocity of its new place, by the local gradient");
+           "a particle that drifts takes the velocity of its new place, by the local gradient");
 
   keys.add("smoothing.rate", s.smoothing.rate,
            "rate at which velocities off the linear field of their neighbours decay; u: the largest fluid speed, at "

@@ -20,17 +20,17 @@ Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, d
     const auto self = static_cast<std::size_t>(i);
     if (!state.moves(self) || is_spray(particles, n0, self)) continue;
     const Vector<Dim> normal = surface_normal<Dim>(state.near(), state.asymmetry, particles.free_surface, i);
-    Vector<Dim> delta = scale * state.asymmetry[self];
+    Vector<Dim> drift = scale * state.asymmetry[self], push;
     if (normal != Vector<Dim>{}) {
-      delta -= dot(delta, normal) * normal;
-      delta +=
+      drift -= dot(drift, normal) * normal;
+      push =
           scale * repulsion<Dim>(state.near(), particles.position, particles.type, shifting.least_distance, spacing, i);
     }
-    if (const double length = norm(delta); length > largest) delta *= largest / length;
-    shift.displacement[self] = delta;
+    const double length = norm(drift + push), share = length > largest ? largest / length : 1.0;
+    shift.displacement[self] = share * (drift + push);
     if (shifting.correct_velocity)
       shift.velocity_change[self] =
-          limited_change<Dim>(state.near(), particles.velocity, particles.type, gradient[self] * delta, i);
+          limited_change<Dim>(state.near(), particles.velocity, particles.type, share * (gradient[self] * drift), i);
   }
   return shift;
 }

@@ -13,37 +13,71 @@ namespace {
 
 const MPI_Comm comm = MPI_COMM_WORLD;
 
-/// Distance [dp], after ten steps of a tank at rest, of two particles of the surface that started half of dp apart.
-double distance_after_steps(const std::string& least_distance) {
-  const Case config = shipped_case("hydrostatic.toml", {"shifting.least_distance=" + least_distance});
-  const double dp = config.particles.spacing;
-  const Vector<2> left{{0.5 * config.tank.size[0] - 0.5 * dp, config.tank.fluid_height - 0.5 * dp}};
-  const Vector<2> right{{left[0] + dp, left[1]}};
-  Checkpoint<2> start = make_simulation<2>(comm, config).checkpoint();
-  std::int64_t first = -1, second = -1;
-  for (const auto& [id, position] : gather_by_id(comm, start.particles, start.particles.position)) {
-    if (norm(position - left) < 1e-6 * dp) first = id;
-    if (norm(position - right) < 1e-6 * dp) second = id;
-  }
-  EXPECT_GE(std::min(first, second), 0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(start.particles.owned); ++i) {
-    if (start.particles.id[i] != first) continue;
-    start.particles.position[i][0] += 0.5 * dp;
-    start.searched_position[i] = start.particles.position[i];
+/// A tank with two particles of the surface half of dp apart.
+class NearPair {
+ public:
+  explicit NearPair(const std::string& least_distance)
+      : config_(shipped_case("hydrostatic.toml", {"shifting.least_distance=" + least_distance})),
+        start_(make_simulation<2>(comm, config_).checkpoint()) {
+    const double dp = config_.particles.spacing;
+    const Vector<2> left{{0.5 * config_.tank.size[0] - 0.5 * dp, config_.tank.fluid_height - 0.5 * dp}};
+    const Vector<2> right{{left[0] + dp, left[1]}};
+    for (const auto& [id, position] : gather_by_id(comm, start_.particles, start_.particles.position)) {
+      if (norm(position - left) < 1e-6 * dp) first_ = id;
+      if (norm(position - right) < 1e-6 * dp) second_ = id;
+    }
+    EXPECT_GE(std::min(first_, second_), 0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(start_.particles.owned); ++i) {
+      if (start_.particles.id[i] != first_) continue;
+      start_.particles.position[i][0] += 0.5 * dp;
+      start_.searched_position[i] = start_.particles.position[i];
+    }
   }
 
-  auto simulation = make_simulation<2>(comm, config, &start);
-  for (int n = 0; n < 10; ++n) simulation.step();
-  const auto places = gather_by_id(comm, simulation.particles(), simulation.particles().position);
-  return norm(places.at(second) - places.at(first)) / dp;
-}
+  Checkpoint<2>& start() { return start_; }
+  Particles<2> after(int steps) const {
+    auto simulation = make_simulation<2>(comm, config_, &start_);
+    for (int n = 0; n < steps; ++n) simulation.step();
+    return simulation.particles();
+  }
+  /// [dp]
+  double distance_after(int steps) const {
+    const Particles<2> particles = after(steps);
+    const auto places = gather_by_id(comm, particles, particles.position);
+    return norm(places.at(second_) - places.at(first_)) / config_.particles.spacing;
+  }
+
+ private:
+  Case config_;
+  Checkpoint<2> start_;
+  std::int64_t first_ = -1, second_ = -1;
+};
 
 TEST(Shifting, PartsParticlesThatAreTooNearBesideTheSurface) {
-  const double apart = distance_after_steps("0.9");
-  const double without = distance_after_steps("0.0");
+  const double apart = NearPair("0.9").distance_after(10);
+  const double without = NearPair("0.0").distance_after(10);
   EXPECT_GT(apart, without + 0.01);
   EXPECT_LT(apart, 1.0);
-  EXPECT_NEAR(distance_after_steps("0.5"), without, 1e-6);  // they are farther apart than that
+  EXPECT_NEAR(NearPair("0.5").distance_after(10), without, 1e-6);  // they are farther apart than that
+}
+
+TEST(Shifting, PushesNoVelocity) {
+  NearPair pushed("0.9"), free("0.0");
+  for (NearPair* pair : {&pushed, &free}) {
+    Particles<2>& particles = pair->start().particles;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
+      if (particles.type[i] == ParticleType::fluid)
+        particles.velocity[i] = {{particles.position[i][0], -particles.position[i][1]}};
+  }
+  const Particles<2> one = pushed.after(1), other = free.after(1);
+  const auto places = gather_by_id(comm, one, one.position);
+  const auto velocities = gather_by_id(comm, one, one.velocity);
+  double moved = 0.0;
+  for (const auto& [id, place] : gather_by_id(comm, other, other.position))
+    moved = std::max(moved, norm(place - places.at(id)));
+  EXPECT_GT(moved, 1e-5);
+  for (const auto& [id, velocity] : gather_by_id(comm, other, other.velocity))
+    EXPECT_LT(norm(velocity - velocities.at(id)), 1e-12) << id;
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ struct Shift {
 };
 
 /// Particles drift to where neighbours are missing, delta = C u_ref dt F_i, at most 0.1 dp. They do not drift through
-/// the free surface; beside it, they push each other apart where they are too near. They take the velocity of their new
-/// place, within the range of their neighbours'. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the
+/// the free surface; beside it, they push each other apart where they are too near. They take the velocity of the place
+/// that they drift to, within the range of their neighbours'; a push changes none. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the
 /// full lattice [-]; `gradient`: of the velocities [1/s]. Not collective.
 template <int Dim>
 Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
