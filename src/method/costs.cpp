@@ -21,13 +21,16 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   constexpr double pair = sizeof(int) + sizeof(double);
   constexpr double entry = sizeof(PetscInt) + sizeof(double);
   // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice; the
-  // consistent scheme also surface marks, asymmetry, velocity and its gradient, and twice the crowding.
+  // consistent scheme also surface marks, asymmetry, velocity, its gradient and its change, and twice the crowding.
   double traffic = sizeof(typename Decomposition<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
   if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
   if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
   if (settings.pressure.packing) traffic += 2.0 * sizeof(double);
   if (needs_asymmetry(settings)) traffic += sizeof(Vector<Dim>) + 1.0;
   if (needs_velocity_gradients(settings)) traffic += sizeof(Vector<Dim>) + sizeof(Matrix<Dim>);
+  if (settings.shifting.coefficient > 0.0 && settings.shifting.correct_velocity &&
+      settings.shifting.least_distance > 0.0)
+    traffic += sizeof(Vector<Dim>);
   return {.particle_memory = static_cast<double>(bytes_per_particle<Dim>()) + 2.0 * sizeof(int) +
                              sizeof(Vector<Dim>),  // with the cells' order
           .row_memory = near * pair + (0.5 * far + 1.0) * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,

@@ -182,6 +182,17 @@ Vector<Dim> limited_change(const PairList& near, std::span<const Vector<Dim>> ve
 }
 
 template <int Dim>
+Vector<Dim> off_mean(const PairList& near, std::span<const Vector<Dim>> change, std::span<const ParticleType> type,
+                     double n0, int i) {
+  const Vector<Dim> own = change[static_cast<std::size_t>(i)];
+  Vector<Dim> sum;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (j < change.size() && type[j] == ParticleType::fluid) sum += weight * (own - change[j]);
+  });
+  return 1.0 / n0 * sum;
+}
+
+template <int Dim>
 Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> position,
                        std::span<const Vector<Dim>> velocity, std::span<const Matrix<Dim>> gradient, double n0, int i) {
   const auto self = static_cast<std::size_t>(i);
@@ -318,6 +329,8 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
                                                double, const Matrix<Dim>&, double, int);                               \
   template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \
                                       double, double, int);                                                            \
+  template Vector<Dim> off_mean<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,     \
+                                     double, int);                                                                     \
   template Vector<Dim> limited_change<Dim>(const PairList&, std::span<const Vector<Dim>>,                              \
                                            std::span<const ParticleType>, const Vector<Dim>&, int);                    \
   template Vector<Dim> off_linear<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,    \

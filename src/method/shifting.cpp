@@ -16,6 +16,7 @@ Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, d
   const double scale = shifting.coefficient * speed * dt;
   if (scale == 0.0) return shift;
   const double largest = largest_shift * spacing;
+  std::vector<Vector<Dim>> change_by_push(state.owned());
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (!state.moves(self) || is_spray(particles, n0, self)) continue;
@@ -28,10 +29,19 @@ Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, d
     }
     const double length = norm(drift + push), share = length > largest ? largest / length : 1.0;
     shift.displacement[self] = share * (drift + push);
-    if (shifting.correct_velocity)
-      shift.velocity_change[self] =
-          limited_change<Dim>(state.near(), particles.velocity, particles.type, share * (gradient[self] * drift), i);
+    if (!shifting.correct_velocity) continue;
+    const auto change_by = [&](const Vector<Dim>& way) {
+      return limited_change<Dim>(state.near(), particles.velocity, particles.type, share * (gradient[self] * way), i);
+    };
+    shift.velocity_change[self] = change_by(drift);
+    change_by_push[self] = change_by(push);
   }
+  if (!shifting.correct_velocity || shifting.least_distance == 0.0) return shift;
+  change_by_push.resize(state.role.size());
+  state.decomposition.halo().refresh(change_by_push, particles.owned);
+  for (int i = 0; i < particles.owned; ++i)
+    if (const auto self = static_cast<std::size_t>(i); state.moves(self))
+      shift.velocity_change[self] += off_mean<Dim>(state.near(), change_by_push, particles.type, n0, i);
   return shift;
 }
 

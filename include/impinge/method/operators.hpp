@@ -89,6 +89,12 @@ template <int Dim>
 Vector<Dim> limited_change(const PairList& near, std::span<const Vector<Dim>> velocity,
                            std::span<const ParticleType> type, const Vector<Dim>& change, int i);
 
+/// What a change of velocity [m/s] has beside those of the fluid around, sum (c_i - c_j) W_ij / n0, without images: all
+/// together it changes no momentum. `change`: of owned and halo particles.
+template <int Dim>
+Vector<Dim> off_mean(const PairList& near, std::span<const Vector<Dim>> change, std::span<const ParticleType> type,
+                     double n0, int i);
+
 /// What the velocity differences to the neighbours have beyond those of a linear field,
 /// 1/n0 sum (u_j - u_i - (G_i + G_j) r_ij/2) W [m/s] (21), equal and opposite for the two of a pair. On a smooth field
 /// it is of fourth order in the radius. `gradient`: G [1/s], of particles up to the last that is no image; pairs

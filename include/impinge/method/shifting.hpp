@@ -14,9 +14,10 @@ struct Shift {
 };
 
 /// Particles drift to where neighbours are missing, delta = C u_ref dt F_i, at most 0.1 dp. They do not drift through
-/// the free surface; beside it, they push each other apart where they are too near. They take the velocity of the place
-/// that they drift to, within the range of their neighbours'; a push changes none. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the
-/// full lattice [-]; `gradient`: of the velocities [1/s]. Not collective.
+/// the free surface; beside it, they push each other apart where they are too near. They take the velocity of the
+/// place that they drift to, within the range of their neighbours', and of that they are pushed to as far as momentum
+/// allows. `speed`: u_ref [m/s]; `spacing`: dp [m]; `n0`: number density of the full lattice [-]; `gradient`: of the
+/// velocities [1/s]. Collective.
 template <int Dim>
 Shift<Dim> shift_of(const ShiftingSettings& shifting, double speed, double dt, double spacing, double n0,
                     std::span<const Matrix<Dim>> gradient, const State<Dim>& state);
