@@ -55,15 +55,16 @@ void RoundJetComparison::set_wall_average(const Particles<3>& particles, double 
 }
 
 void RoundJetComparison::find_peak() {
-  std::vector<std::size_t> below_jet;
+  std::vector<std::size_t> near;
   for (std::size_t k = 0; k < map_.size(); ++k) {
     const double azimuth = std::atan2(map_[k].y, map_[k].x);
-    if (std::hypot(map_[k].x, map_[k].y) < radius_ * footprint(target_.angle, azimuth)) below_jet.push_back(k);
+    const double beside_jet = radius_ * (1.0 + footprint(target_.angle, azimuth));
+    if (std::hypot(map_[k].x, map_[k].y) < beside_jet) near.push_back(k);
   }
   largest_.reset();
-  for (const std::size_t middle : below_jet) {
+  for (const std::size_t middle : near) {
     double area = 0.0, pressure = 0.0, x = 0.0, y = 0.0;
-    for (const std::size_t k : below_jet) {
+    for (const std::size_t k : near) {
       if (std::hypot(map_[k].x - map_[middle].x, map_[k].y - map_[middle].y) >= target_.spacing) continue;
       area += areas_[k];
       pressure += areas_[k] * map_[k].pressure;

@@ -431,16 +431,20 @@ TEST(RoundJetComparison, WithoutAnAverageAnObliqueJetHasNoStagnationPoint) {
 
 constexpr double slot_width = 0.4, depth = 0.1;
 
-std::string slot(const Turn& turn, double angle) {
+std::string slot_inlet(const Turn& turn, double angle) {
   const AnalyticJet jet(slot_width, speed, density, angle * degree);
   const std::string section = fmt::format("section = \"rectangle\"\nwidth = {}\nheight = {}\nacross = {}", depth,
                                           slot_width, Turn::text(turn.rotation * Vector<3>{{0.0, 1.0, 0.0}}));
+  return inlet(turn, {{jet.axis_position(), 0.0, 0.0}}, angle, section);
+}
+
+std::string slot(const Turn& turn, double angle) {
   const auto side = [&](double y) {
     const double x = y > 0.0 ? 2.0 : -2.0;
     return polygon(turn, {{{-x, y, 0.0}}, {{x, y, 0.0}}, {{x, y, 2.0}}, {{-x, y, 2.0}}});
   };
-  return inlet(turn, {{jet.axis_position(), 0.0, 0.0}}, angle, section) +
-         plate(turn, {{-1.6, -0.5 * depth}}, {{2.0, 0.5 * depth}}) + side(0.5 * depth) + side(-0.5 * depth);
+  return slot_inlet(turn, angle) + plate(turn, {{-1.6, -0.5 * depth}}, {{2.0, 0.5 * depth}}) + side(0.5 * depth) +
+         side(-0.5 * depth);
 }
 
 /// The exact jet in the plane, disturbed; without wall particles.
@@ -511,6 +515,18 @@ TEST(SlotJet, HasTheMetricsOfThePlaneJetHoweverItIsTurned) {
       EXPECT_NEAR((metrics.*value).value(), (expected.*value).value(), 1e-6);
     EXPECT_NEAR(metrics.mean_field_l2.value(), expected.mean_field_l2.value(), 1e-2);  // bins end at the particles
   }
+}
+
+TEST(SlotJet, GapMayBeTheInsideOfABox) {
+  const std::string box =
+      fmt::format("[[wall]]\nshape = \"box\"\nlow = [-1.6, {0}, 0]\nhigh = [2, {1}, 2]\nwet = \"inside\"\n",
+                  -0.5 * depth, 0.5 * depth);
+  const JetTarget target = jet_target(case_of(slot_inlet({}, 90.0) + box));
+  EXPECT_EQ(target.type, TargetType::plate);
+  EXPECT_NEAR(target.end - target.begin, 3.6, 1e-3);
+  double length = 0.0;
+  for (const auto& [column, point] : target.points.value()) length += point.length;
+  EXPECT_NEAR(length, 3.6, 2.0 * dp);
 }
 
 TEST(SlotJet, AtNinetyDegreesRunsAlongTheGap) {
