@@ -18,7 +18,7 @@ def main():
     for path in reports:
         report = json.loads(path.read_text())
         rows.append({"case": path.parent.parent.name, "status": report["status"], **report["metrics"]})
-    columns = list(rows[0])
+    columns = [column for column in rows[0] if any(row.get(column) is not None for row in rows)]
     table = [columns] + [[cell(row.get(column)) for column in columns] for row in rows]
     widths = [max(len(line[k]) for line in table) for k in range(len(columns))]
     for line in table:

@@ -9,7 +9,7 @@
     run.history["max_speed"], run.history.units      # also run.probes, gauges, sections, forces, outlets
     snapshot.walls["mean_pressure"]                  # time-averaged pressure on the walls; None before the average
     run.validation.report["metrics"]["force_ratio"]  # the comparison of impinge-validate; None where there is none
-    run.validation.wall_pressure["analytic"]         # also film_thickness, surface, isobars
+    run.validation.wall_pressure["analytic"]         # also film_thickness, surface, isobars, wall_map
 
 A run that goes on can be read at any time: a file under its final name is complete. Nothing is written. Raises
 FileNotFoundError, OSError, KeyError or ValueError, with the path or the name that is wrong in the text.
@@ -89,7 +89,7 @@ class Table(dict):
         self.path, self.units = pathlib.Path(path), {}
         rows = [row for row in rows if len(row) == len(rows[0])]
         for k, head in enumerate(rows[0]):
-            match = re.fullmatch(r"(.+?)(?: \[(.+)\]|_(m|Pa))", head)
+            match = re.fullmatch(r"(.+?)(?: \[(.+)\]|_(m|Pa|deg))", head)
             name, unit = (match[1], match[2] or match[3]) if match else (head, (units or {}).get(head, "1"))
             cells = [row[k] for row in rows[1:]]
             values = np.array([number(cell) for cell in cells], dtype=float)
@@ -109,7 +109,7 @@ class Table(dict):
 
 def sheet_ends(x):
     """Where the columns of a profile along a plate pass the gap between its two sheets: the first row beyond."""
-    return np.flatnonzero(np.diff(x) > 1.5 * np.diff(x).min()) + 1 if x.size > 1 else np.array([], int)
+    return np.flatnonzero(np.diff(x) > 1.5 * np.median(np.diff(x))) + 1 if x.size > 1 else np.array([], int)
 
 
 def smooth_discharge(table):
@@ -213,10 +213,13 @@ class Validation:
         self.folder = pathlib.Path(folder)
         self.report = json.loads((self.folder / "validation.json").read_text(encoding="utf-8"))
         frame = self.report["frame"]
-        self.origin, self.axes = np.array(frame["origin"]), np.column_stack((frame["x"], frame["y"]))
+        self.origin, self.axes = np.array(frame["origin"]), np.column_stack([frame[axis] for axis in "xyz" if axis in frame])
 
     def table(self, name):
-        """wall_pressure, film_thickness, surface or isobars; None where the target has none."""
+        """wall_pressure, film_thickness, surface, isobars or wall_map; None where the target has none.
+
+        The first column of the first two is the place: x, and of a round jet r at 90 degrees, the film's azimuth else.
+        """
         path = self.folder / f"{name}.csv"
         return Table(path) if path.exists() else None
 
@@ -224,6 +227,7 @@ class Validation:
     film_thickness = property(lambda self: self.table("film_thickness"))
     surface = property(lambda self: self.table("surface"))
     isobars = property(lambda self: self.table("isobars"))
+    wall_map = property(lambda self: self.table("wall_map"))
 
     def to_frame(self, points):
         """Points of the run [m] in the frame of the analytic flow."""

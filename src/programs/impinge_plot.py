@@ -12,7 +12,7 @@ pressure.gif.
 
 If DIR/validation holds what impinge-validate wrote of a jet, it also draws the jet beside the analytic one:
 pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation; of a wedge or a cup
-wall_pressure.png.
+wall_pressure.png; of a round jet wall_pressure.png, film_thickness.png and wall_map.png.
 
 Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's. Exit code 3: neither has them.
 """
@@ -54,7 +54,7 @@ plt.rcParams.update({"figure.dpi": 160, "font.size": 10, "axes.grid": False, "le
 
 
 class JetRun:
-    """The comparison of impinge-validate; x and y in jet widths."""
+    """The comparison of impinge-validate; lengths in widths of the jet, of a round one in diameters."""
 
     def __init__(self, run):
         self.validation = run.validation
@@ -64,7 +64,12 @@ class JetRun:
         self.spacing = parameters["spacing"] / self.width
         self.dynamic_pressure = self.report["analytic"]["stagnation_pressure"]
         self.plate = np.array([parameters["plate_begin"], parameters["plate_end"]]) / self.width
+        self.is_round = self.report["target"] == "flat_wall"
+        self.unit = "D" if self.is_round else "H"
         self.has_field = self.report["target"] in ("plate", "jet")
+        self.plots = ((plot_wall_pressure, plot_film_thickness, plot_wall_map) if self.is_round else
+                      (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks) if self.has_field else
+                      (plot_wall_pressure,))
         if self.has_field:
             self.read_field(run.directory)
 
@@ -77,7 +82,7 @@ class JetRun:
         self.isobars = {cp: lines[isobars["cp"] == cp] for cp in np.unique(isobars["cp"])}
 
         snapshot = impinge.Snapshot(directory / self.report["last_snapshot"])
-        position = self.validation.to_frame(snapshot.position[:, :2]) / self.width
+        position = self.validation.to_frame(snapshot.position[:, : self.validation.origin.size]) / self.width
         self.type, self.rank, pressure = snapshot.type, snapshot.rank, snapshot.pressure
         finite = snapshot.finite
         self.not_drawn = np.count_nonzero(~(finite & np.isfinite(pressure)))
@@ -85,6 +90,8 @@ class JetRun:
         margin = 0.15 + 6 * self.spacing  # the inlet buffer and the ghosts of the wall
         self.low, self.high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
         near = finite & (np.where(finite[:, None], np.abs(position), np.inf) < 100).all(axis=1)
+        if self.report["parameters"].get("depth"):
+            near &= (self.type != WALL) | (np.abs(position[:, 1]) < self.spacing)  # the plate, not the walls beside the jet
         self.position = np.where(near[:, None], position, np.nan)
         self.pressure = pressure
 
@@ -94,7 +101,7 @@ class JetRun:
     def title(self):
         parameters, report = self.report["parameters"], self.report
         return (
-            f"{report['case']}: {report['target']}, {parameters['angle']:.6g}°, $H/d_p$ = {parameters['width_over_spacing']:g}, "
+            f"{report['case']}: {report['target'].replace('_', ' ')}, {parameters['angle']:.6g}°, ${self.unit}/d_p$ = {parameters['width_over_spacing']:g}, "
             + (f"paper's scheme, $\\gamma$ = {parameters['gamma']:g}" if parameters["scheme"] == "paper" else "consistent scheme")
             + f", t = {report['time']:.3f} s"
             + (f" ({report['status']})" if report["status"] != "finished" else "")
@@ -169,7 +176,9 @@ def plot_pressure(run):
 def plot_profile(run, table, computed, analytic, y_label, name, note):
     """A profile along the plate, computed and analytic."""
     figure, axes = plt.subplots(layout="constrained", figsize=(8, 4))
-    x = table["x"] / run.width
+    place = next(iter(table))
+    is_length = table.units[place] == "m"
+    x = table[place] / (run.width if is_length else 1)
     gap = impinge.sheet_ends(x)  # where lines stop
     for column, style in (
         (computed, dict(color=COMPUTED, marker=".", ms=4, lw=0.8, label="computed")),
@@ -181,7 +190,8 @@ def plot_profile(run, table, computed, analytic, y_label, name, note):
             axes.plot(xs, values, **style)
             style["label"] = None
     axes.axhline(0, color="0.7", lw=0.8, zorder=0)
-    axes.set(xlim=tuple(run.plate), xlabel="x / H from the stagnation point", ylabel=y_label)
+    limits = {"x": tuple(run.plate), "azimuth": (-180, 180)}.get(place, (0, max(x, default=1)))
+    axes.set(xlim=limits, ylabel=y_label, xlabel=f"{place} / {run.unit} from the stagnation point" if is_length else f"{place} [°]")
     axes.set_title(f"{run.title()}\n{note}", fontsize=10)
     axes.legend()
     if not np.isfinite(table[computed]).any():
@@ -189,11 +199,14 @@ def plot_profile(run, table, computed, analytic, y_label, name, note):
     run.save(figure, name)
 
 
-def plot_wall_pressure(run):
+def averaged(run):
     window = run.report["window"]
-    note = f"averaged over {window['begin']:.3f}..{window['end']:.3f} s" if window else "no time average yet"
+    return f"averaged over {window['begin']:.3f}..{window['end']:.3f} s" if window else "no time average yet"
+
+
+def plot_wall_pressure(run):
     table = run.validation.wall_pressure
-    plot_profile(run, table, "pressure", "analytic", "wall pressure [Pa]", "wall_pressure.png", note)
+    plot_profile(run, table, "pressure", "analytic", "wall pressure [Pa]", "wall_pressure.png", averaged(run))
 
 
 def plot_film_thickness(run):
@@ -201,6 +214,24 @@ def plot_film_thickness(run):
     note = f"mean of {times['count']} snapshot(s), {times['first_time']:.3f}..{times['last_time']:.3f} s"
     table = run.validation.film_thickness
     plot_profile(run, table, "thickness", "analytic", "film thickness [m]", "film_thickness.png", note)
+
+
+def plot_wall_map(run):
+    """The averaged wall pressure as seen from above, in the frame of the wall."""
+    table = run.validation.wall_map
+    figure, axes = plt.subplots(layout="constrained", figsize=(8, 6))
+    run.position, chosen = np.column_stack((table["x"], table["y"])) / run.width, np.isfinite(table["pressure"])
+    colours = dict(array=table["pressure"][chosen], cmap="viridis", norm=plt.Normalize(0, run.dynamic_pressure))
+    discs = draw_particles(axes, run, chosen, 1.2, **colours)
+    azimuth, angle = np.linspace(0, 2 * np.pi, 361), np.radians(run.report["parameters"]["angle"])
+    edge = 0.5 * np.sin(angle) / (1 - np.cos(angle) * np.cos(azimuth))
+    axes.plot(edge * np.cos(azimuth), edge * np.sin(azimuth), color="white", lw=1)
+    axes.update_datalim(run.position)
+    axes.autoscale_view()
+    axes.set(xlabel="x / D, along the incline", ylabel="y / D", aspect="equal")
+    axes.set_title(f"{run.title()}\n{averaged(run)}; white: edge of the jet, continued to the wall", fontsize=10)
+    figure.colorbar(discs, ax=axes, extend="both", shrink=0.8, label="wall pressure [Pa], clipped to 0..$\\rho U^2/2$")
+    run.save(figure, "wall_map.png")
 
 
 def plot_ranks(run):
@@ -504,8 +535,7 @@ def main():
             return
         if run.validation:
             jet = JetRun(run)
-            plots = (plot_pressure, plot_wall_pressure, plot_film_thickness, plot_ranks)
-            for plot in plots if jet.has_field else (plot_wall_pressure,):
+            for plot in jet.plots:
                 plot(jet)
         Figures(run, arguments.step, arguments.time).draw()
     except (OSError, KeyError, ValueError) as error:

@@ -50,15 +50,23 @@ MOST_ROWS = 1500  # of a curve, with two rows for each line of it
 # Of the metrics of impinge-validate: what they are, their exact value, and whether it is a relative error.
 METRICS = {
     "wall_l2": ("wall pressure, averaged: error", 0, True),
+    "wall_l2_near": ("the same within 1.5 radii of a round jet", 0, True),
     "force_ratio": ("force / exact force", 1, False),
     "force_scatter": ("force / exact force: scatter over the snapshots", 0, False),
     "stagnation_mean": ("pressure in the stagnation point [Pa]", "stagnation_pressure", False),
+    "centre_x": ("centre of pressure along the incline [diameters]", 0, False),
+    "centre_y": ("centre of pressure across the incline [diameters]", 0, False),
     "field_l2": ("pressure in a snapshot: error", 0, True),
     "mean_field_l2": ("pressure field, averaged: error", 0, True),
     "velocity_rms": ("velocity in a snapshot: error", 0, True),
     "surface_rms_dp": ("free surface: distance from the exact one [spacings]", 0, False),
     "film_h1": ("thick sheet / exact thickness far away", "film_h1", False),
     "film_h2": ("thin sheet / exact thickness far away", "film_h2", False),
+    "film_at_d": ("film / exact film, one diameter from the stagnation point", 1, False),
+    "film_at_1_5_d": ("film / exact film, 1.5 diameters from it", 1, False),
+    "film_flux": ("flux of the film / flux of the jet", 1, False),
+    "film_momentum": ("momentum of the film along the incline / exact one", 1, False),
+    "film_law_rms": ("film: distance from the approximate law", None, True),
     "sheet_speed": ("speed of the sheets / speed of the jet", 1, False),
     "plane_x": ("place of the stagnation point between the jets [m]", 0, False),
     "plane_drift": ("its speed [m/s]", 0, False),
@@ -194,10 +202,10 @@ def charts(run):
     ):
         if profile:
             lines = {name: profile[column] for name, column in (("exact", "analytic"), ("computed", label)) if np.isfinite(profile[column]).any()}
-            x = profile["x"]
+            place, x = next(iter(profile.items()))
             gaps = impinge.sheet_ends(x)  # where lines stop
             lines = {name: np.insert(values, gaps, np.nan) for name, values in lines.items()}
-            result.append(chart("validation", f"{title} [{profile.units[label]}]", "x [m]", np.insert(x, gaps, x[gaps]), lines))
+            result.append(chart("validation", f"{title} [{profile.units[label]}]", f"{place} [{profile.units[place]}]", np.insert(x, gaps, x[gaps]), lines))
     return result
 
 
@@ -280,7 +288,7 @@ def metrics(validation):
     """The table of the comparison with the exact flow, or how to get it."""
     if not validation:
         return ("<p>This run has not been compared with an exact flow. <code>impinge-validate</code> does that for a plane jet on a "
-                "plate, a wedge, a cup, or against another jet.</p>")
+                "plate, a wedge, a cup, or against another jet, and for a round jet on a flat wall.</p>")
     report = validation.report
     rows = []
     for key, (words, exact, is_error) in METRICS.items():
@@ -292,7 +300,9 @@ def metrics(validation):
     words = (f"<p>Compared with the exact flow (target: {html.escape(report['target'])}) over {times['count']} snapshot(s), "
              f"t = {times['first_time']:.4g} to {times['last_time']:.4g} s.</p>")
     measured = table(rows, ("", "this run", "exact", "metric"))
-    return f'<div class="pair"><div>{words}{measured}</div>{picture(validation.folder / "pressure.png", "computed and exact pressure")}</div>'
+    drawn = picture(validation.folder / "pressure.png", "computed and exact pressure") or picture(
+        validation.folder / "wall_map.png", "pressure on the wall")
+    return f'<div class="pair"><div>{words}{measured}</div>{drawn}</div>'
 
 
 def picture(path, words):

@@ -1,4 +1,4 @@
-// impinge-validate: measures a run with a plane jet against the exact solution and draws it.
+// impinge-validate: measures a run with a jet against the exact solution and draws it.
 
 #include <fmt/format.h>
 #include <mpi.h>
@@ -53,8 +53,9 @@ int main(int argc, char** argv) {
   prepare_streams();
   Arguments arguments;
   CLI::App app(
-      "Measures a run with a plane jet against the exact solution: geometry = \"jet\", or a jet of a scene on a plate, "
-      "a wedge, a cup or another jet. Reads the snapshots in DIR; writes the report, profiles "
+      "Measures a run with a jet against the exact solution: geometry = \"jet\", or a jet of a scene on a plate, "
+      "a wedge, a cup or another jet; in three dimensions a round jet or a slot jet on a flat wall. Reads the "
+      "snapshots in DIR; writes the report, profiles "
       "and figures into DIR/validation.",
       "impinge-validate");
   app.footer("\nExit codes: 0 done, 1 a file could not be read or written, 2 wrong input");

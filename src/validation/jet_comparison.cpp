@@ -3,32 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
+
+#include "impinge/validation/statistics.hpp"
 
 namespace impinge {
 namespace {
 
 using Side = AnalyticJet::Side;
-
-std::optional<double> if_finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
-
-bool is_finite(const Particles<2>& particles, std::size_t i) {
-  const auto finite = [](const Vector<2>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]); };
-  return finite(particles.position[i]) && finite(particles.velocity[i]) && std::isfinite(particles.pressure[i]);
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Standard deviation; not a number of a single value.
-double scatter_of(const std::vector<double>& values) {
-  const double mean = mean_of(values);
-  double squares = 0.0;
-  for (const double value : values) squares += std::pow(value - mean, 2);
-  return std::sqrt(squares / (static_cast<double>(values.size()) - 1.0));
-}
 
 std::optional<AnalyticWedge> wedge_of(const JetTarget& target) {
   if (target.type != TargetType::wedge) return std::nullopt;
@@ -92,12 +74,13 @@ void WallComparison::measure(JetMetrics& metrics) const {
   metrics.force_scatter = if_finite(scatter_of(force_ratio_));
   metrics.stagnation_mean = if_finite(mean_of(stagnation_));
   metrics.stagnation_scatter = if_finite(scatter_of(stagnation_));
+  metrics.stagnation_ratio = if_finite(mean_of(stagnation_) / (0.5 * target_.density * target_.speed * target_.speed));
 }
 
 JetComparison::JetComparison(const JetTarget& target)
     : jet_(analytic_jet(target)),
       spacing_(target.spacing),
-      area_(spacing_ * spacing_ * (target.type == TargetType::jet ? 0.5 : 1.0)),
+      area_(target.particle_area()),
       wall_(target, jet_.normal_force(), [jet = jet_](double x) { return jet.wall_pressure(x); }) {
   const double width = jet_.width();
   const double thin = jet_.plate_position_of_cp(0.01, Side::h2);

@@ -11,6 +11,8 @@
 #include "impinge/observe/fluid_value.hpp"
 #include "impinge/scenes/analytic_jet.hpp"
 #include "impinge/validation/analytic_wedge.hpp"
+#include "impinge/validation/space_target.hpp"
+#include "impinge/validation/target_search.hpp"
 
 namespace impinge {
 namespace {
@@ -101,11 +103,8 @@ class TargetSearch {
   }
 
   JetTarget target() {
+    check_inlets_of_target(config_, 2);
     const auto& inlets = config_.inlets;
-    if (config_.dimension != 2) refuse("it has three dimensions");
-    if (inlets.empty() || inlets.size() > 2) refuse(fmt::format("it has {} inlets", inlets.size()));
-    for (const InletEntry& inlet : inlets)
-      if (!inlet.speeds.empty()) refuse(fmt::format("the speed of the inlet {} changes in time", inlet.name));
     const InletEntry& inlet = inlets.front();
     target_.width = inlet.width;
     target_.speed = inlet.speed;
@@ -122,14 +121,7 @@ class TargetSearch {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& reason) const {
-    throw InputError(
-        {fmt::format("the case {} has no jet with an exact solution here: {}. Measured are: geometry = \"jet\"; in a "
-                     "scene an inlet whose axis meets a long straight wall, the middle of a shorter one across it, the "
-                     "edge of a wedge or the bottom of a cup, both symmetric to it; and two equal inlets that blow at "
-                     "each other",
-                     config_.name, reason)});
-  }
+  [[noreturn]] void refuse(const std::string& reason) const { refuse_target(config_, reason); }
 
   static Vector<2> unit(const InletEntry& inlet) {
     const Vector<2> direction = vector_of<2>(inlet.direction);
@@ -143,17 +135,7 @@ class TargetSearch {
   /// The distance along a way at which an outlet begins, at most `length` [m].
   template <class Way>
   double until_outlet(Way&& at, double length) const {
-    const double step = 0.25 * target_.spacing;
-    double before = 0.0;
-    for (double next = std::min(step, length); before < length; before = next, next = std::min(next + step, length)) {
-      if (!is_swallowed(at(next))) continue;
-      for (int k = 0; k < 50; ++k) {
-        const double middle = 0.5 * (before + next);
-        (is_swallowed(at(middle)) ? next : before) = middle;
-      }
-      return before;
-    }
-    return length;
+    return distance_until(length, search_step * target_.spacing, [&](double x) { return is_swallowed(at(x)); });
   }
 
   /// Two equal jets: the frame's y runs against the first.
@@ -231,7 +213,7 @@ class TargetSearch {
     if (arm.edges.empty()) refuse("its jet meets the end of a wall");
     if (turns_away(arm.edges.front(), side)) refuse("its jet meets a wall that curves away from it");
     // Short of the first outlet.
-    const double above = 0.25 * target_.spacing;
+    const double above = outlet_height * target_.spacing;
     for (std::size_t k = 0; k < arm.edges.size(); ++k) {
       OutlineEdge& edge = arm.edges[k];
       const double length = edge.length();
@@ -272,13 +254,10 @@ class TargetSearch {
     const Arm& thin = arms[along_first ? 1 : 0];
     const Vector<2> x = thick.exit(), y = thick.side * thick.edges.back().normal(1.0);
     const double angle = std::min(std::atan2(-dot(direction_, y), dot(direction_, x)), 0.5 * pi);
-    constexpr double grazing = pi / 180.0;
     if (angle < grazing) refuse("its jet grazes a wall, at less than 1 degree");
     const AnalyticJet jet(target_.width, target_.speed, target_.density, angle);
     const double begin = jet.axis_position() - thin.length(), end = jet.axis_position() + thick.length();
-    constexpr double without_pressure = 0.01;
-    if (begin > jet.plate_position_of_cp(without_pressure, Side::h2) ||
-        end < jet.plate_position_of_cp(without_pressure, Side::h1)) {
+    if (!is_long_enough(jet, begin, end)) {
       if (0.5 * pi - angle > same_direction)
         refuse(
             fmt::format("the wall that its jet meets at {:.4g} degrees reaches from {:.3g} to {:.3g} jet widths from "
@@ -375,6 +354,36 @@ class TargetSearch {
 
 }  // namespace
 
+void refuse_target(const Case& config, const std::string& reason) {
+  throw InputError(
+      {fmt::format("the case {} has no jet with an exact solution here: {}. Measured are: geometry = \"jet\"; in a "
+                   "scene an inlet whose axis meets a long straight wall, the middle of a shorter one across it, the "
+                   "edge of a wedge or the bottom of a cup, both symmetric to it; two equal inlets that blow at "
+                   "each other; and in three dimensions an inlet of circular section, or of a rectangular one that "
+                   "fills the gap between two walls, whose axis meets a large flat wall",
+                   config.name, reason)});
+}
+
+void check_inlets_of_target(const Case& config, std::size_t most) {
+  const auto& inlets = config.inlets;
+  if (inlets.empty() || inlets.size() > most) refuse_target(config, fmt::format("it has {} inlets", inlets.size()));
+  for (const InletEntry& inlet : inlets)
+    if (!inlet.speeds.empty())
+      refuse_target(config, fmt::format("the speed of the inlet {} changes in time", inlet.name));
+}
+
+bool is_long_enough(const AnalyticJet& jet, double begin, double end) {
+  constexpr double without_pressure = 0.01;
+  return begin <= jet.plate_position_of_cp(without_pressure, Side::h2) &&
+         end >= jet.plate_position_of_cp(without_pressure, Side::h1);
+}
+
+double JetTarget::particle_area() const {
+  const double area = spacing * spacing;
+  if (space) return area * spacing / space->depth;
+  return type == TargetType::jet ? 0.5 * area : area;
+}
+
 std::optional<JetTarget::Point> JetTarget::point_of(const Particles<2>& particles, std::size_t i) const {
   if (particles.type[i] != ParticleType::wall) return std::nullopt;
   if (!points) return Point{particles.position[i][0], spacing, 1.0};
@@ -383,6 +392,7 @@ std::optional<JetTarget::Point> JetTarget::point_of(const Particles<2>& particle
 }
 
 JetTarget jet_target(const Case& config) {
+  if (config.dimension == 3) return space_target(config);
   if (config.geometry != SceneType::jet) return TargetSearch(config).target();
   return {.type = TargetType::plate,
           .width = config.jet.width,

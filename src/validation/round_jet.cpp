@@ -67,8 +67,8 @@ double RoundJet::film(double distance) const {
   return 0.5 * radius_ / r * share;
 }
 
-double film_law(double angle, double azimuth) {
-  return 0.5 * std::pow(std::sin(angle), 3) / std::pow(1.0 - std::cos(angle) * std::cos(azimuth), 2);
-}
+double footprint(double angle, double azimuth) { return std::sin(angle) / (1.0 - std::cos(angle) * std::cos(azimuth)); }
+
+double film_law(double angle, double azimuth) { return 0.5 * std::sin(angle) * std::pow(footprint(angle, azimuth), 2); }
 
 }  // namespace impinge

@@ -16,6 +16,7 @@
 
 #include "impinge/core/errors.hpp"
 #include "impinge/io/run_directory.hpp"
+#include "impinge/validation/space_target.hpp"
 
 namespace impinge {
 namespace {
@@ -32,18 +33,27 @@ struct MetricKey {
 
 constexpr MetricKey metric_keys[] = {
     {"wall_l2", &JetMetrics::wall_l2, "relative L2 error of the averaged wall pressure"},
+    {"wall_l2_near", &JetMetrics::wall_l2_near, "the same of a round jet within 1.5 radii"},
     {"force_ratio", &JetMetrics::force_ratio, "averaged force over the exact one"},
     {"force_scatter", &JetMetrics::force_scatter, "its standard deviation over the snapshots"},
     {"peak_pressure", &JetMetrics::peak_pressure, "largest averaged wall pressure [Pa]"},
     {"peak_x", &JetMetrics::peak_x, "its distance from the stagnation point [m]"},
     {"stagnation_mean", &JetMetrics::stagnation_mean, "wall pressure at the stagnation point, mean [Pa]"},
     {"stagnation_scatter", &JetMetrics::stagnation_scatter, "its standard deviation over the snapshots [Pa]"},
+    {"stagnation_ratio", &JetMetrics::stagnation_ratio, "its mean over rho U^2 / 2"},
+    {"centre_x", &JetMetrics::centre_x, "centre of pressure of a round jet, along the incline [D]"},
+    {"centre_y", &JetMetrics::centre_y, "the same across the incline [D]"},
     {"field_l2", &JetMetrics::field_l2, "relative L2 error of the pressure in a snapshot"},
     {"mean_field_l2", &JetMetrics::mean_field_l2, "the same of the averaged pressure"},
     {"velocity_rms", &JetMetrics::velocity_rms, "RMS error of the velocity over U"},
     {"surface_rms_dp", &JetMetrics::surface_rms_dp, "RMS distance from the analytic free surface [dp]"},
     {"film_h1", &JetMetrics::film_h1, "thickness of the thick sheet over h1"},
     {"film_h2", &JetMetrics::film_h2, "thickness of the thin sheet over h2"},
+    {"film_at_d", &JetMetrics::film_at_d, "film of a round jet over the exact one at r = D"},
+    {"film_at_1_5_d", &JetMetrics::film_at_1_5_d, "the same at r = 1.5 D"},
+    {"film_flux", &JetMetrics::film_flux, "flux of a round jet's film over the jet's"},
+    {"film_momentum", &JetMetrics::film_momentum, "its momentum along the incline over the exact one"},
+    {"film_law_rms", &JetMetrics::film_law_rms, "RMS distance of the film from the approximate law"},
     {"sheet_speed", &JetMetrics::sheet_speed, "mean speed in the sheets of a wedge or cup over U"},
     {"plane_x", &JetMetrics::plane_x, "stagnation point between two jets, from their middle [m]"},
     {"plane_drift", &JetMetrics::plane_drift, "speed at which it moves [m/s]"},
@@ -85,7 +95,16 @@ std::optional<Stock> last_stock(const std::string& path) {
   return Stock{number("step"), number("in"), number("out"), number("lost"), number("fluid")};
 }
 
-std::int64_t count_fluid(const Particles<2>& particles) {
+template <int Dim>
+Particles<Dim> particles_of(const std::string& path) {
+  Particles<Dim> particles;
+  read_snapshot(MPI_COMM_SELF, path, particles);
+  return particles;
+}
+
+template <int Dim>
+std::int64_t count_fluid(const std::string& path) {
+  const Particles<Dim> particles = particles_of<Dim>(path);
   return std::count(particles.type.begin(), particles.type.begin() + particles.owned, ParticleType::fluid);
 }
 
@@ -106,6 +125,19 @@ std::vector<std::string> differences_of(const FluidSettings& fluid, const JetTar
 }
 
 nlohmann::json to_json(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nullptr; }
+
+/// Origin and axes of the frame of the profiles: two axes of a plane jet, three of a round one.
+nlohmann::json frame_of(const JetTarget& target) {
+  const auto json = [](const auto& origin, const auto& x, const auto& y) {
+    return nlohmann::json{{"origin", origin.component}, {"x", x.component}, {"y", y.component}};
+  };
+  if (!target.space) return json(target.frame.origin, target.frame.x, target.frame.y);
+  const SpacePlate& space = *target.space;
+  if (target.type == TargetType::plate) return json(space.origin, space.x, space.z);
+  nlohmann::json frame = json(space.origin, space.x, space.y);
+  frame["z"] = space.z.component;
+  return frame;
+}
 
 /// A file that is written line by line.
 class TextFile {
@@ -160,10 +192,9 @@ void write_isobars(const JetTarget& target, const fs::path& path) {
   file.finish();
 }
 
-Particles<2> particles_of(const std::string& path) {
-  Particles<2> particles;
-  read_snapshot(MPI_COMM_SELF, path, particles);
-  return particles;
+/// A snapshot in the frame of a plate.
+Particles<2> in_frame_of(const JetTarget& target, const std::string& path) {
+  return target.space ? in_frame(target, particles_of<3>(path)) : in_frame(target, particles_of<2>(path));
 }
 
 void take(const JetComparison& comparison, Validation& result) {
@@ -178,11 +209,9 @@ void take(const JetComparison& comparison, Validation& result) {
 /// `average_path`: the snapshot with the time-averaged wall pressure; empty: there is none.
 void compare_plate(const std::vector<std::string>& paths, const std::string& average_path, Validation& result) {
   JetComparison comparison(result.target);
-  if (!average_path.empty()) {
-    const Particles<2> particles = in_frame(result.target, particles_of(average_path));
-    comparison.set_wall_average(particles, result.window->end - result.window->begin);
-  }
-  for (const std::string& path : paths) comparison.add_snapshot(in_frame(result.target, particles_of(path)));
+  if (!average_path.empty())
+    comparison.set_wall_average(in_frame_of(result.target, average_path), result.window->end - result.window->begin);
+  for (const std::string& path : paths) comparison.add_snapshot(in_frame_of(result.target, path));
   take(comparison, result);
 }
 
@@ -190,10 +219,23 @@ void compare_plate(const std::vector<std::string>& paths, const std::string& ave
 void compare_split(const std::vector<std::string>& paths, const std::string& average_path, Validation& result) {
   SplitJetComparison comparison(result.target);
   if (!average_path.empty())
-    comparison.set_wall_average(particles_of(average_path), result.window->end - result.window->begin);
-  for (const std::string& path : paths) comparison.add_snapshot(particles_of(path));
+    comparison.set_wall_average(particles_of<2>(average_path), result.window->end - result.window->begin);
+  for (const std::string& path : paths) comparison.add_snapshot(particles_of<2>(path));
   result.metrics = comparison.metrics();
   result.wall = comparison.wall_profile();
+  result.force = comparison.force();
+}
+
+/// Likewise.
+void compare_round(const std::vector<std::string>& paths, const std::string& average_path, Validation& result) {
+  RoundJetComparison comparison(result.target);
+  if (!average_path.empty())
+    comparison.set_wall_average(particles_of<3>(average_path), result.window->end - result.window->begin);
+  for (const std::string& path : paths) comparison.add_snapshot(particles_of<3>(path));
+  result.metrics = comparison.metrics();
+  result.wall = comparison.wall_profile();
+  result.film = comparison.film_profile();
+  result.wall_map = comparison.wall_map();
   result.force = comparison.force();
 }
 
@@ -218,7 +260,7 @@ void compare_jets(const std::vector<std::string>& paths, Validation& result) {
   Vector<2> sum;
   std::vector<double> places;
   for (const std::string& path : paths) {
-    const auto point = stagnation_point(particles_of(path), middle, target.width);
+    const auto point = stagnation_point(particles_of<2>(path), middle, target.width);
     if (!point) continue;
     sum += *point - middle;
     places.push_back(dot(*point - middle, along));
@@ -233,7 +275,7 @@ void compare_jets(const std::vector<std::string>& paths, Validation& result) {
   Particles<2> particles;
   std::map<std::int64_t, double> sums;  // of the pressures on the plane, by id
   for (const std::string& path : paths) {
-    particles = in_frame(target, particles_of(path));
+    particles = in_frame(target, particles_of<2>(path));
     comparison.add_snapshot(particles);
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
       if (particles.type[i] == ParticleType::wall) sums[particles.id[i]] += particles.pressure[i];
@@ -299,15 +341,15 @@ Validation validate(const std::string& directory, const SnapshotSelection& selec
     case TargetType::wedge:
     case TargetType::cup:
       compare_split(chosen, average_path, result);
+      break;
+    case TargetType::flat_wall:
+      compare_round(chosen, average_path, result);
   }
 
-  Particles<2> particles;
   if (const auto stock = last_stock(history_path(directory, config.name))) {
     std::int64_t stored = stock->fluid;
-    if (stock->step == result.last.step) {
-      read_snapshot(MPI_COMM_SELF, result.last_path, particles);
-      stored = count_fluid(particles);
-    }
+    if (stock->step == result.last.step)
+      stored = config.dimension == 3 ? count_fluid<3>(result.last_path) : count_fluid<2>(result.last_path);
     result.particle_balance = stock->in - stock->out - stock->lost - stored;
   }
   return result;
@@ -328,6 +370,7 @@ std::string to_json(const Validation& validation) {
   report["target"] = word_of(target.type);
   report["parameters"] = {{"angle", target.angle * 180.0 / std::numbers::pi},
                           {"width", target.width},
+                          {"depth", target.space && target.space->depth > 0.0 ? json(target.space->depth) : nullptr},
                           {"speed", target.speed},
                           {"density", target.density},
                           {"spacing", target.spacing},
@@ -337,16 +380,16 @@ std::string to_json(const Validation& validation) {
                           {"kernel", word_of(config.kernel.type)},
                           {"plate_begin", target.begin},
                           {"plate_end", target.end}};
-  report["frame"] = {
-      {"origin", target.frame.origin.component}, {"x", target.frame.x.component}, {"y", target.frame.y.component}};
-  const bool is_split = target.type == TargetType::wedge || target.type == TargetType::cup;
-  const auto sheet = [&](Side side) {
+  report["frame"] = frame_of(target);
+  const auto sheet = [&](Side side) -> std::optional<double> {
+    if (target.type == TargetType::flat_wall) return std::nullopt;
+    const bool is_split = target.type == TargetType::wedge || target.type == TargetType::cup;
     return is_split ? 0.5 * target.width : analytic_jet(target).sheet_thickness(side);
   };
   report["analytic"] = {{"stagnation_pressure", 0.5 * target.density * target.speed * target.speed},
                         {"force", validation.force},
-                        {"h1", sheet(Side::h1)},
-                        {"h2", sheet(Side::h2)},
+                        {"h1", to_json(sheet(Side::h1))},
+                        {"h2", to_json(sheet(Side::h2))},
                         {"film_h1", to_json(validation.analytic_film_h1)},
                         {"film_h2", to_json(validation.analytic_film_h2)}};
   report["differences"] = validation.differences;
@@ -372,9 +415,10 @@ std::string to_table(const Validation& validation) {
   const Case& config = validation.config;
   const JetTarget& target = validation.target;
   const SnapshotHeader& last = validation.last;
-  std::string table = fmt::format("case       {}: {}, {:.6g} deg, H/dp = {:.4g}, {}, kernel {}\n", config.name,
-                                  word_of(target.type), target.angle * 180.0 / std::numbers::pi,
-                                  target.width / target.spacing, scheme_text(config), word_of(config.kernel.type));
+  std::string table =
+      fmt::format("case       {}: {}, {:.6g} deg, {}/dp = {:.4g}, {}, kernel {}\n", config.name, word_of(target.type),
+                  target.angle * 180.0 / std::numbers::pi, target.type == TargetType::flat_wall ? 'D' : 'H',
+                  target.width / target.spacing, scheme_text(config), word_of(config.kernel.type));
   table += fmt::format("run        {} at t = {:.6g} s, step {}\n", printable(last.status), last.time, last.step);
   if (!last.message.empty()) table += fmt::format("           {}\n", printable(last.message));
   for (const std::string& difference : validation.differences)
@@ -402,19 +446,29 @@ void write_report(const Validation& validation, const std::string& directory) {
   fs::create_directories(folder, error);
   if (error) throw FileError(fmt::format("cannot create {}: {}", directory, error.message()));
 
+  const JetTarget& target = validation.target;
+  const bool is_round = target.type == TargetType::flat_wall, is_by_radius = is_round && is_perpendicular(target);
   TextFile wall(folder / "wall_pressure.csv");
-  wall.print("x_m,pressure_Pa,analytic_Pa\n");
+  wall.print("{},pressure_Pa,analytic_Pa\n", is_by_radius ? "r_m" : "x_m");
   for (const PlatePoint& point : validation.wall)
     wall.print("{:.9g},{:.9g},{:.9g}\n", point.x, point.pressure, point.analytic);
   wall.finish();
 
   TextFile film(folder / "film_thickness.csv");
-  film.print("x_m,thickness_m,analytic_m\n");
+  film.print("{},thickness_m,analytic_m\n", is_by_radius ? "r_m" : is_round ? "azimuth_deg" : "x_m");
+  const double unit = is_round && !is_by_radius ? 180.0 / std::numbers::pi : 1.0;
   for (const FilmColumn& column : validation.film)
-    film.print("{:.9g},{:.9g},{:.9g}\n", column.x, column.thickness, column.analytic);
+    film.print("{:.9g},{:.9g},{:.9g}\n", column.x * unit, column.thickness, column.analytic);
   film.finish();
 
-  const JetTarget& target = validation.target;
+  if (is_round) {
+    TextFile map(folder / "wall_map.csv");
+    map.print("x_m,y_m,pressure_Pa\n");
+    for (const WallMapPoint& point : validation.wall_map)
+      map.print("{:.9g},{:.9g},{:.9g}\n", point.x, point.y, point.pressure);
+    map.finish();
+  }
+
   if (target.type == TargetType::plate || target.type == TargetType::jet) {
     write_surface(target, folder / "surface.csv");
     write_isobars(target, folder / "isobars.csv");

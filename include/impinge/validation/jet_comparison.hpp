@@ -19,24 +19,29 @@ AnalyticJet analytic_jet(const JetTarget& target);
 
 /// Measures of a run. H: jet width, U: speed, dp: particle spacing, p_a: analytic pressure. "Particles" are the fluid
 /// particles with -2 H <= x <= 4 H, and at least 2 dp before the ends of the wall, in all compared snapshots; outside
-/// the analytic fluid p_a = 0. An empty value: the run does not give it, there is no exact solution for it, or a number
-/// that it needs is not finite. Between two jets the wall particles are those of in_frame, and a time average is that
-/// over the snapshots.
+/// the analytic fluid p_a = 0. A slot jet is measured in the plane, by space_target's in_frame. An empty value: the run
+/// does not give it, there is no exact solution for it, or a number that it needs is not finite. Between two jets the
+/// wall particles are those of in_frame, and a time average is that over the snapshots.
 struct JetMetrics {
   /// sqrt(sum (p - p_a)^2 l / sum p_a^2 l) [-] over the wall particles with p_a > 1e-3 rho U^2 / 2; p: time average, l:
   /// length of wall that a particle stands for, dp on a plate.
-  std::optional<double> wall_l2;
+  /// Of a round jet l is an area; near: r < 1.5 R.
+  std::optional<double> wall_l2, wall_l2_near;
   /// Sum of p l over the wall particles / exact force [-]; p: time average. The force is that normal to a plate, rho
-  /// U^2 H sin a, or that along the jet, rho U^2 H (1 - cos b), with the angle b that a wedge or a cup turns the jet
-  /// by.
+  /// U^2 H sin a or, of a round jet of section A, rho U^2 A sin a, or that along the jet, rho U^2 H (1 - cos b), with
+  /// the angle b that a wedge or a cup turns the jet by.
   std::optional<double> force_ratio;
   /// Standard deviation over the snapshots of the same ratio at their times [-].
   std::optional<double> force_scatter;
-  /// Largest time-averaged wall pressure [Pa] and its place, from the stagnation point [m].
+  /// Largest time-averaged wall pressure [Pa] and its place, from the stagnation point [m]. Of a round jet the pressure
+  /// is the mean over the wall particles within dp of a place.
   std::optional<double> peak_pressure, peak_x;
   /// Pressure of the wall particles within dp of the stagnation point: mean and standard deviation over the snapshots
-  /// [Pa].
-  std::optional<double> stagnation_mean, stagnation_scatter;
+  /// [Pa], and mean over rho U^2 / 2 [-]. Of an oblique round jet the place is that of peak_pressure.
+  std::optional<double> stagnation_mean, stagnation_scatter, stagnation_ratio;
+  /// Of a round jet: the centre of pressure on the wall, of the time average, from the foot of the jet's axis, along
+  /// the incline and across it, over the diameter [-].
+  std::optional<double> centre_x, centre_y;
   /// sqrt(sum (p - p_a)^2 / sum p_a^2) [-] over the particles of one snapshot; mean over the snapshots.
   std::optional<double> field_l2;
   /// The same of time averages: p and p_a are averaged over all snapshots' particles in a square bin of edge dp, and
@@ -53,6 +58,14 @@ struct JetMetrics {
   /// Particles of the jet that passes over the sheet are left out. On a wedge and in a cup h1 = h2 = H/2, and the
   /// particles are those up to H above JetTarget::sheets.
   std::optional<double> film_h1, film_h2;
+  /// Film of a round jet at 90 degrees over the exact one in the rings D - dp < r < D + dp and 1.5 D - dp < r < 1.5 D +
+  /// dp
+  /// [-]: volume of the fluid particles over area, mean over the snapshots.
+  std::optional<double> film_at_d, film_at_1_5_d;
+  /// Of the film of a round jet: flux over that of the jet, and at other angles than 90 degrees momentum flux along the
+  /// incline over rho U^2 A cos a, mean over the snapshots; and the RMS distance over the azimuth of thickness times
+  /// radius from film_law, over its mean R^2 / 2 [-]. See RoundJetComparison.
+  std::optional<double> film_flux, film_momentum, film_law_rms;
   /// Mean velocity of the particles over a wedge's or cup's sheets, along the wall / U [-].
   std::optional<double> sheet_speed;
   /// Between two jets: the stagnation point's distance from the middle of the inlets along the first jet, mean over the
@@ -147,7 +160,7 @@ class JetComparison {
 
   AnalyticJet jet_;
   double spacing_;
-  double area_;  // of a particle: of two folded halves each has half [m^2]
+  double area_;  // of a particle [m^2]
   WallComparison wall_;
   double field_begin_, field_end_;  // range of x of the particles that count [m]
   Columns plate_, h1_, h2_;

@@ -27,6 +27,10 @@ class RoundJet {
   double radius_, speed_, density_;
 };
 
+/// Distance over R of the edge of a round jet, continued to the plate, from the focus of that ellipse, R cot a off the
+/// axis' foot: sin a / (1 - cos a cos psi), for an angle between jet and plate [rad] and an azimuth [rad].
+double footprint(double angle, double azimuth);
+
 /// Thickness times radius of a round jet's film over R^2 at an azimuth [rad], for an angle between jet and plate [rad]:
 /// sin^3 a / (2 (1 - cos a cos psi)^2), about the stagnation point R cot a off the axis' foot (Hasson & Peck 1964). Its
 /// flux is that of the jet and its momentum is exact for any angle; the law itself is exact at 90 degrees only.

@@ -1,5 +1,5 @@
 #pragma once
-// The report on a run with a plane jet: the files in its directory against the exact solution.
+// The report on a run with a jet: the files in its directory against the exact solution.
 
 #include <cstdint>
 #include <optional>
@@ -8,6 +8,7 @@
 
 #include "impinge/io/snapshot.hpp"
 #include "impinge/validation/jet_comparison.hpp"
+#include "impinge/validation/round_jet_comparison.hpp"
 
 namespace impinge {
 
@@ -28,7 +29,7 @@ struct Validation {
   SnapshotHeader last;  ///< of the last snapshot
   std::string last_path;
   JetTarget target;                      ///< what the jet meets; of two jets through the stagnation point that is found
-  double force = 0.0;                    ///< that metrics.force_ratio refers to [N/m]
+  double force = 0.0;                    ///< that metrics.force_ratio refers to [N/m]; of a round jet [N]
   std::vector<std::string> differences;  ///< what acts on the run and not on the analytic jet, with its strength
   std::optional<TimeSpan> window;        ///< of the wall-pressure average
   std::vector<double> times;             ///< of the compared snapshots [s]
@@ -39,6 +40,7 @@ struct Validation {
   std::optional<std::int64_t> particle_balance;
   std::vector<PlatePoint> wall;
   std::vector<FilmColumn> film;
+  std::vector<WallMapPoint> wall_map;                        ///< of a round jet
   std::optional<double> analytic_film_h1, analytic_film_h2;  ///< film_h1, film_h2 of the analytic jet [-]
 };
 
@@ -55,7 +57,8 @@ std::string to_json(const Validation& validation);
 std::string to_table(const Validation& validation);
 
 /// Writes into `directory`, which it creates: validation.json, the profiles wall_pressure.csv and film_thickness.csv,
-/// and the analytic jet of a plate or of two jets as lines, surface.csv and isobars.csv. Throws FileError.
+/// the analytic jet of a plate or of two jets as lines, surface.csv and isobars.csv, and of a round jet the averaged
+/// pressure at all wall particles, wall_map.csv. Throws FileError.
 void write_report(const Validation& validation, const std::string& directory);
 
 }  // namespace impinge
