@@ -74,6 +74,11 @@ def colour_range(values):
     return float(low), float(high if high > low else low + 1.0)
 
 
+def bounds_of(points):
+    """The corners of the box around points, without the outermost 0.3 % on each side: drops that fly off."""
+    return np.quantile(points, 0.003, axis=0), np.quantile(points, 0.997, axis=0)
+
+
 class Table(dict):
     """The columns of a CSV file by name, as arrays; `units` has their units, "1" where there is none.
 
@@ -204,6 +209,35 @@ class Snapshot:
             group = file["wall"]
             window = (float(group.attrs["window_begin"]), float(group.attrs["window_end"]))
             return {"window": window, **{name: group[name][:] for name in group}}
+
+
+class Scene:
+    """The scene at the start, <case>_scene.vtkhdf: cells, each of some `points` from `begin` to `end`.
+
+    Of each cell `item` says what it is (wall, inlet, outlet, fluid ...), `number` its place in its list of the case and
+    `normal` the direction out of a wall's wet side, or that of an inlet's flow. `names` has the names of each item.
+    """
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as file:
+            grid = file["VTKHDF"]
+            pieces = np.stack([grid[f"NumberOf{name}"][:] for name in ("Points", "Cells")], axis=1)
+            offsets = grid["Offsets"][:]
+            self.points, cells = grid["Points"][:], {name: grid["CellData"][name][:] for name in ("item", "number", "normal")}
+            words = text_of(file.attrs["items"]).split("\n")
+            self.names = {word: text_of(names).split("\n") for word, names in file["names"].attrs.items()}
+            self.name, self.dimension = text_of(file.attrs["name"]), int(file.attrs["dimension"])
+            self.spacing = float(file.attrs["spacing"])
+            self.case = tomllib.loads(text_of(file.attrs["case"]))
+        # Each piece counts its points and cells from 0, and has one offset more than cells.
+        begin, end, first = [], [], 0
+        for k, (_, count) in enumerate(pieces):
+            own = offsets[first : first + count + 1] + pieces[:k, 0].sum()
+            begin.append(own[:-1])
+            end.append(own[1:])
+            first += count + 1
+        self.begin, self.end = np.concatenate(begin), np.concatenate(end)
+        self.item, self.number, self.normal = np.array(words)[cells["item"]], cells["number"], cells["normal"]
 
 
 class Validation:
@@ -337,6 +371,12 @@ class Run:
                     continue
                 marks.append({"kind": kind, "name": item["name"], "points": points})
         return marks
+
+    @functools.cached_property
+    def scene(self):
+        """The scene at the start; None where the directory has none."""
+        path = self.file("_scene.vtkhdf")
+        return Scene(path) if path.exists() else None
 
     @functools.cached_property
     def validation(self):
