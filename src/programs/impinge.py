@@ -79,6 +79,34 @@ def bounds_of(points):
     return np.quantile(points, 0.003, axis=0), np.quantile(points, 0.997, axis=0)
 
 
+def upright(case):
+    """The direction against gravity; without gravity that of z, in two dimensions of y."""
+    gravity = np.array(case["fluid"]["gravity"], dtype=float)
+    return -gravity / np.linalg.norm(gravity) if gravity.any() else np.eye(gravity.size)[-1]
+
+
+class Cut:
+    """The upright plane through the middle of points in space, along the longer of their horizontal sides.
+
+    `seen` are the axes to the right and up, `across` is the third one, and the plane is at `place` on it [m].
+    """
+
+    def __init__(self, points, case):
+        up = int(np.abs(upright(case)).argmax())
+        low, high = bounds_of(points) if len(points) else np.zeros((2, 3))
+        first, second = (axis for axis in range(3) if axis != up)
+        along, self.across = (first, second) if (high - low)[first] > 0.95 * (high - low)[second] else (second, first)
+        self.seen, self.place = [along, up], float((low + high)[self.across] / 2)
+
+    def holds(self, points, spacing):
+        """True for the particles in the plane; both layers next to it where it is in the middle between two."""
+        return np.abs(points[:, self.across] - self.place) <= 0.501 * spacing
+
+    @property
+    def words(self):
+        return f"at {'xyz'[self.across]} = {self.place:.4g} m"
+
+
 class Table(dict):
     """The columns of a CSV file by name, as arrays; `units` has their units, "1" where there is none.
 
@@ -179,6 +207,12 @@ class Snapshot:
         values = values.astype(bool) if name == "free_surface" else values
         setattr(self, name, values)
         return values
+
+    @property
+    def when(self):
+        """Time and step in words, and how the run has ended where that is not well."""
+        status = "" if self.status in ("finished", "running") else f" ({self.status})"
+        return f"t = {self.time:.4g} s, step {self.step}{status}"
 
     @property
     def fluid(self):
@@ -383,3 +417,17 @@ class Run:
         """What impinge-validate has written of the run; None where it has not."""
         folder = self.directory / "validation"
         return Validation(folder) if (folder / "validation.json").exists() else None
+
+
+def pictures_in_space(run, snapshot, tell):
+    """The figures of impinge_space, each with its name; none of a plane run. Calls tell(text) for what is missing."""
+    if snapshot.dimension != 3:
+        return
+    try:
+        import impinge_space
+    except ImportError as error:
+        tell(f"{error}; without scikit-image (Debian's python3-skimage) there are no pictures in space")
+        return
+    if run.case.get("wall") and run.scene is None:
+        tell(f"there is no {run.file('_scene.vtkhdf')}; without it the pictures in space have no walls")
+    yield from impinge_space.figures(run, snapshot)

@@ -26,7 +26,8 @@ WIDTH = 0.45
 MOST_NODES = 24e6  # of the grid that has the density
 MOST_TRIANGLES = 300_000  # of the walls, where they have colours
 
-PIXELS = np.array([1200, 900])  # of a picture at most
+PIXELS = np.array([1000, 760])  # of a picture at most
+MARGINS = (95, 35, 85, 10)  # left, right, below and above it, for the scales [pixels]
 SAMPLES = 2  # of a pixel along each axis
 MOST_FRAGMENTS = 4_000_000  # at a time
 ELEVATION, AZIMUTHS = np.radians(25), np.radians([-60, 30, 120, 210])  # of the eye
@@ -194,94 +195,111 @@ class Camera:
         near = -1 / points[..., 2:]
         return np.concatenate((points[..., :2] * near * self.scale - self.corner, near), axis=-1)
 
+    def facing(self, corners, normals):
+        """The cosines between the normals of triangles and the ways to the eye."""
+        return np.einsum("ij,ij->i", normals, unit(self.eye - corners.mean(axis=1)))
+
 
 class Canvas:
     """A picture of triangles, with the nearest one of each sample."""
 
     def __init__(self, camera):
         self.camera, self.size = camera, SAMPLES * camera.size
-        self.near = np.zeros(self.size.prod())  # reciprocal of the distance
-        self.colour = np.ones((self.size.prod(), 3))
+        self.near = np.zeros(self.size.prod())  # reciprocal of the distance of what is seen
+        self.limit = self.near.copy()  # of what may cover that
+        self.colour = np.zeros((self.size.prod(), 4))
 
-    def fragments(self, corners):
-        """Triangle, sample, weights of the corners and nearness, of the samples in triangles in the picture; in parts."""
-        low = np.clip(np.ceil(corners[..., :2].min(axis=1) - 0.5), 0, self.size).astype(int)
-        high = np.clip(np.floor(corners[..., :2].max(axis=1) - 0.5) + 1, 0, self.size).astype(int)
-        width, height = np.maximum(high - low, 0).T
-        ends = np.cumsum(width * height)
-        cuts = np.searchsorted(ends, np.arange(MOST_FRAGMENTS, ends[-1] if len(ends) else 0, MOST_FRAGMENTS))
-        for part in np.split(np.arange(len(corners)), np.unique(cuts)):
-            count = width[part] * height[part]
-            k = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-            triangle = np.repeat(part, count)
-            x, y = low[triangle, 0] + k % width[triangle], low[triangle, 1] + k // width[triangle]
-            weights = self.weights(corners[triangle], x, y)
-            inside = (weights >= 0).all(axis=1)
-            triangle, weights = triangle[inside], weights[inside]
-            yield triangle, (y * self.size[0] + x)[inside], weights, (weights * corners[triangle, :, 2]).sum(axis=1)
+    def planes(self, corners):
+        """Of triangles, what gives the corners' weights w and the nearness n at a sample: (w, w, w, n) = planes (x, y, 1)."""
+        places = self.camera.project(corners) * (SAMPLES, SAMPLES, 1) - (0.5, 0.5, 0)
+        (x, y), near = np.moveaxis(places[..., :2], -1, 0), places[..., 2]
+        (bx, cx), (by, cy) = ((np.roll(z, -1, axis=1), np.roll(z, -2, axis=1)) for z in (x, y))
+        weights = np.stack((by - cy, cx - bx, bx * cy - by * cx), axis=2)
+        whole = weights[..., 2].sum(axis=1)
+        is_area = np.abs(whole) > 1e-9
+        weights /= np.where(is_area, whole, np.nan)[:, None, None]
+        low = np.where(is_area, np.clip(np.ceil(y.min(axis=1)), 0, self.size[1]), 0).astype(int)
+        high = np.where(is_area, np.clip(np.floor(y.max(axis=1)) + 1, 0, self.size[1]), 0).astype(int)
+        return np.concatenate((weights, (weights * near[..., None]).sum(axis=1, keepdims=True)), axis=1), low, high
 
-    @staticmethod
-    def weights(corners, x, y):
-        """Of the three corners in the picture, at samples."""
-        (ax, ay), (bx, by), (cx, cy) = (corners[:, k, :2].T - (x + 0.5, y + 0.5) for k in range(3))
-        parts = np.stack((bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx), axis=1)
-        total = parts.sum(axis=1, keepdims=True)
-        return np.divide(parts, total, out=np.full_like(parts, -1), where=total != 0)
+    def fragments(self, planes, low, high):
+        """Triangle, sample and nearness of the samples in triangles that lie between rows; in parts."""
+        rows = np.maximum(high - low, 0)
+        triangle = np.repeat(np.arange(len(planes)), rows)
+        y = np.arange(triangle.size) - np.repeat(np.cumsum(rows) - rows - low, rows)
+        slope, rest = planes[triangle, :, 0], planes[triangle, :, 1] * y[:, None] + planes[triangle, :, 2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bound = -rest[:, :3] / slope[:, :3]
+        outside = (slope[:, :3] == 0) & (rest[:, :3] < 0)
+        begin = np.where(slope[:, :3] > 0, bound, np.where(outside, np.inf, -np.inf)).max(axis=1)
+        end = np.where(slope[:, :3] < 0, bound, np.inf).min(axis=1)
+        begin = np.ceil(np.clip(begin, 0, self.size[0])).astype(int)
+        count = np.maximum(np.floor(np.clip(end, -1, self.size[0] - 1)).astype(int) - begin + 1, 0)
+        near, sample = slope[:, 3] * begin + rest[:, 3], y * self.size[0] + begin
+        ends = np.cumsum(count)
+        parts = np.searchsorted(ends, np.arange(MOST_FRAGMENTS, ends[-1] if ends.size else 0, MOST_FRAGMENTS))
+        for part in np.split(np.arange(ends.size), parts):
+            span = np.repeat(part, count[part])
+            k = np.arange(span.size) - np.repeat(np.cumsum(count[part]) - count[part], count[part])
+            yield triangle[span], sample[span] + k, near[span] + slope[span, 3] * k
 
-    def project(self, corners):
-        return self.camera.project(corners) * (SAMPLES, SAMPLES, 1)
+    def add(self, corners, normals, colours, shade, gloss=0.0, slack=0.0):
+        """Draws triangles, coloured at their corners. The light takes away up to a share of the colour and adds a gloss.
 
-    def facing(self, corners, normals):
-        """The cosine between normals and the way to the eye."""
-        return np.einsum("...j,...j->...", normals, unit(self.camera.eye - corners))
-
-    def add(self, corners, normals, colours, shade, gloss=0.0):
-        """Draws triangles, coloured at their corners. The light takes away up to a share of the colour and adds a gloss."""
-        light = self.camera.axes @ unit(LIGHT)
-        places = self.project(corners)
-        for triangle, sample, weights, near in self.fragments(places):
+        Glass covers them that is not farther by more than a slack [m].
+        """
+        planes, low, high = self.planes(corners)
+        owner = np.full(self.near.size, -1)
+        for triangle, sample, near in self.fragments(planes, low, high):
             chosen = np.flatnonzero(near > self.near[sample])
-            chosen = chosen[np.argsort(near[chosen])]  # of several triangles in a sample the nearest is the last
-            self.near[sample[chosen]] = near[chosen]
-            owner = np.full(0, 0)
-            last = np.full(self.near.size, -1)
-            last[sample[chosen]] = chosen
-            owner = last[last >= 0]
-            triangle, sample, weights = triangle[owner], sample[owner], weights[owner, :, None]
-            normal = unit((weights * normals[triangle]).sum(axis=1))
-            bright = normal @ light
-            back = self.camera.axes[:, 2]
-            shine = np.maximum(normal @ unit(light + back), 0) ** 40
-            colour = (weights * colours[triangle]).sum(axis=1)
-            self.colour[sample] = np.clip(colour * (1 - shade * (1 - np.maximum(bright, 0)))[:, None] + gloss * shine[:, None], 0, 1)
+            chosen = chosen[np.argsort(near[chosen])]  # of several triangles at a sample the nearest is the last
+            self.near[sample[chosen]], owner[sample[chosen]] = near[chosen], triangle[chosen]
+        sample = np.flatnonzero(owner >= 0)
+        triangle = owner[sample]
+        place = np.stack((sample % self.size[0], sample // self.size[0], np.ones(sample.size)), axis=1)
+        weights = np.einsum("nij,nj->ni", planes[triangle, :3], place)
+        normal = unit(np.einsum("ni,nij->nj", weights, normals[triangle]))
+        light, back = self.camera.axes @ unit(LIGHT), self.camera.axes[:, 2]
+        dark = shade * (1 - np.maximum(normal @ light, 0))
+        shine = gloss * np.maximum(normal @ unit(light + back), 0) ** 40
+        colour = np.einsum("ni,nij->nj", weights, colours[triangle])
+        self.colour[sample, :3] = np.clip(colour * (1 - dark)[:, None] + shine[:, None], 0, 1)
+        self.colour[sample, 3] = 1
+        self.limit[sample] = self.near[sample] / (1 + slack * self.near[sample])
 
-    def add_glass(self, corners, normals, slack):
-        """Draws triangles that you look through, where they are not farther than the rest by more than a slack [m]."""
-        slant = 1 - np.abs(self.facing(corners.mean(axis=1), normals))
+    def add_glass(self, corners, normals):
+        """Draws triangles that you look through."""
+        slant = 1 - np.abs(self.camera.facing(corners, normals))
         opacity = 0.10 + 0.35 * slant**3
         thickness = np.zeros(self.near.size)
-        for triangle, sample, _, near in self.fragments(self.project(corners)):
-            seen = near > self.near[sample] / (1 + slack * self.near[sample])
+        for triangle, sample, near in self.fragments(*self.planes(corners)):
+            seen = near > self.limit[sample]
             thickness += np.bincount(sample[seen], -np.log(1 - opacity[triangle[seen]]), thickness.size)
         clear = np.exp(-thickness)[:, None]
-        self.colour = self.colour * clear + GLASS * (1 - clear)
+        below, alpha = self.colour[:, :3], self.colour[:, 3:]
+        total = alpha * clear + 1 - clear
+        self.colour[:, :3] = (below * alpha * clear + GLASS * (1 - clear)) / np.where(total > 0, total, 1)
+        self.colour[:, 3:] = total
 
     def visible(self, lines, slack):
-        """The pieces of lines that nothing hides: two ends each in the picture."""
-        places = self.camera.project(lines)
-        pieces = []
-        for begin, end in places:
+        """The pieces of lines that nothing hides by more than a slack [m]: two ends each in the picture."""
+        pieces = [np.empty((0, 2, 3))]
+        for begin, end in self.camera.project(lines):
             count = int(np.clip(np.linalg.norm((end - begin)[:2]) / 3, 1, 500))
             along = begin + np.linspace(0, 1, count + 1)[:, None] * (end - begin)
             middle = (along[1:] + along[:-1]) / 2
             column, row = np.clip((SAMPLES * middle[:, :2]).astype(int), 0, self.size - 1).T
             hidden = self.near[row * self.size[0] + column]
             pieces.append(np.stack((along[:-1], along[1:]), axis=1)[middle[:, 2] > hidden / (1 + slack * hidden)])
-        return np.concatenate(pieces)[..., :2] if pieces else np.empty((0, 2, 2))
+        return np.concatenate(pieces)[..., :2]
 
     def picture(self):
+        """Red, green, blue and opacity of the pixels."""
         width, height = self.camera.size
-        return self.colour.reshape(height, SAMPLES, width, SAMPLES, 3).mean(axis=(1, 3))
+        opaque = np.concatenate((self.colour[:, :3] * self.colour[:, 3:], self.colour[:, 3:]), axis=1)
+        mean = opaque.reshape(height, SAMPLES, width, SAMPLES, 4).mean(axis=(1, 3))
+        mean[..., :3] /= np.where(mean[..., 3:] > 0, mean[..., 3:], 1)
+        return mean
 
 
 def axes_of_box(axes, camera, low, high):
@@ -302,9 +320,9 @@ def axes_of_box(axes, camera, low, high):
         style = dict(ha="center", va="center", fontsize=8, color="0.25")
         for tick in ticks[(ticks >= low[axis] - grain) & (ticks <= high[axis] + grain)]:
             place = camera.project(np.where(np.arange(3) == axis, tick, start))[:2]
-            axes.plot(*np.stack((place, place + 8 * out), axis=1), color="0.5", lw=0.6)
-            axes.text(*(place + 30 * out), f"{tick:.4g}", **style)
-        axes.text(*(ends.mean(axis=0) + 75 * out), f"{'xyz'[axis]} [m]", **style)
+            axes.plot(*np.stack((place, place + 7 * out), axis=1), color="0.5", lw=0.6)
+            axes.text(*(place + 24 * out), f"{tick:.4g}", **style)
+        axes.text(*(ends.mean(axis=0) + 72 * out), f"{'xyz'[axis]} [m]", **style)
 
 
 class Space:
@@ -314,29 +332,31 @@ class Space:
         self.run, self.snapshot, self.spacing = run, snapshot, run.spacing
         self.walls = Walls(run, snapshot)
         fluid = snapshot.fluid & snapshot.finite
-        low, high = impinge.bounds_of(snapshot.position[fluid]) if fluid.any() else np.zeros((2, 3))
+        low, high = np.zeros((2, 3))
+        if fluid.any():
+            low, high = impinge.bounds_of(snapshot.position[fluid])
+            low, high = low - 0.5 * self.spacing, high + 0.5 * self.spacing
         corners = self.walls.corners.reshape(-1, 3)
         if len(corners):
-            both = (corners, np.array([low, high])) if fluid.any() else (corners,)
-            low, high = np.min([part.min(axis=0) for part in both], axis=0), np.max([part.max(axis=0) for part in both], axis=0)
-        low, high = low - 0.5 * self.spacing, high + 0.5 * self.spacing
+            corners = np.concatenate((corners, [low, high])) if fluid.any() else corners
+            low, high = corners.min(axis=0), corners.max(axis=0)
         self.low, self.high = low, high
-        self.fluid = fluid & ((snapshot.position >= low) & (snapshot.position <= high)).all(axis=1)
-        gravity = np.array(run.case["fluid"]["gravity"], dtype=float)
-        up = -unit(gravity) if gravity.any() else np.array([0.0, 0.0, 1.0])
-        self.camera = Camera(np.array(list(itertools.product(*zip(low, high)))), self.walls, up)
+        margin = max(0.04 * np.max(high - low), self.spacing)
+        self.fluid = fluid & (np.abs(snapshot.position - (low + high) / 2) <= (high - low) / 2 + margin).all(axis=1)
+        self.camera = Camera(np.array(list(itertools.product(*zip(low, high)))), self.walls, impinge.upright(run.case))
 
     def figure(self, canvas, title, label, norm, colours):
         """A canvas as a figure, with edges of walls, scales along the axes and one of the colours."""
-        figure = Figure(figsize=(8, 8 * self.camera.size[1] / self.camera.size[0] * 0.85 + 0.8), dpi=160, layout="constrained")
+        (width, height), (left, right, below, above) = self.camera.size, MARGINS
+        shape = (height + below + above) / (width + left + right)
+        figure = Figure(figsize=(8, 6.7 * shape + 0.4), dpi=160, layout="constrained")
         axes = figure.add_subplot()
         axes.set_axis_off()
         axes.set_aspect("equal")
-        width, height = self.camera.size
         axes_of_box(axes, self.camera, self.low, self.high)
         axes.imshow(canvas.picture(), origin="lower", extent=(0, width, 0, height), interpolation="antialiased")
-        axes.add_collection(LineCollection(canvas.visible(self.walls.edges, 0.6 * self.spacing), colors=LINE, linewidths=0.6))
-        axes.set(xlim=(-90, width + 20), ylim=(-90, height + 10))
+        axes.add_collection(LineCollection(canvas.visible(self.walls.edges, 0.15 * self.spacing), colors=LINE, linewidths=0.6))
+        axes.set(xlim=(-left, width + right), ylim=(-below, height + above))
         axes.set_title(f"{self.run.name}: {title}", fontsize=10)
         figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours), ax=axes, shrink=0.7, extend="both", label=label)
         return figure
@@ -344,7 +364,7 @@ class Space:
     def wall_canvas(self, colours_of=None):
         """The walls alone, coloured by a function of places on them, or plain."""
         canvas, walls = Canvas(self.camera), self.walls
-        ahead = canvas.facing(walls.corners.mean(axis=1), walls.normals) > 0
+        ahead = self.camera.facing(walls.corners, walls.normals) > 0
         corners, normals = walls.corners[ahead], walls.normals[ahead]
         if colours_of:
             area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
@@ -361,9 +381,9 @@ class Space:
         colours = matplotlib.colormaps["cividis"]
         if len(corners):
             speed = values_near(snapshot.position[fluid], snapshot.speed[fluid], corners, self.spacing)
-            canvas.add(corners, normals, colours(norm(speed))[..., :3], 0.5, 0.25)
-        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass], self.spacing)
-        return self.figure(canvas, f"free surface at t = {snapshot.time:.4g} s", "speed [m/s]", norm, colours)
+            canvas.add(corners, normals, colours(norm(speed))[..., :3], 0.45, 0.25, self.spacing)
+        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass])
+        return self.figure(canvas, f"free surface, {snapshot.when}", "speed [m/s]", norm, colours)
 
     def wall_pressure(self):
         """None where there are no facets or no wall particles."""
@@ -371,7 +391,7 @@ class Space:
         mean = snapshot.walls
         on_walls = snapshot.type == impinge.WALL
         points, pressure = (mean["position"], mean["mean_pressure"]) if mean else (snapshot.position[on_walls], snapshot.pressure[on_walls])
-        when = f"averaged over t = {mean['window'][0]:.4g} to {mean['window'][1]:.4g} s" if mean else f"at t = {snapshot.time:.4g} s"
+        when = f"averaged over t = {mean['window'][0]:.4g} to {mean['window'][1]:.4g} s" if mean else snapshot.when
         finite = np.isfinite(points).all(axis=1) & np.isfinite(pressure)
         points, pressure = points[finite], pressure[finite]
         if not len(self.walls.corners) or not len(points):
@@ -383,7 +403,7 @@ class Space:
             return np.where(np.isfinite(values)[..., None], colours(norm(values))[..., :3], WALL)
 
         canvas, glass = self.wall_canvas(colours_of)
-        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass], self.spacing)
+        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass])
         return self.figure(canvas, f"pressure on the walls, {when}", "pressure [Pa]", norm, colours)
 
 
