@@ -96,11 +96,13 @@ class Cut:
         low, high = bounds_of(points) if len(points) else np.zeros((2, 3))
         first, second = (axis for axis in range(3) if axis != up)
         along, self.across = (first, second) if (high - low)[first] > 0.95 * (high - low)[second] else (second, first)
-        self.seen, self.place = [along, up], float((low + high)[self.across] / 2)
+        self.spacing = float(case["particles"]["spacing"])
+        grain = 0.1 * self.spacing
+        self.seen, self.place = [along, up], grain * round(float((low + high)[self.across]) / 2 / grain)
 
-    def holds(self, points, spacing):
+    def holds(self, points):
         """True for the particles in the plane; both layers next to it where it is in the middle between two."""
-        return np.abs(points[:, self.across] - self.place) <= 0.501 * spacing
+        return np.abs(points[:, self.across] - self.place) <= 0.501 * self.spacing
 
     @property
     def words(self):

@@ -230,7 +230,7 @@ class Slice:
         self.not_drawn = np.count_nonzero(~drawn)
         self.seen, self.slice = [0, 1], ""
         if cut:
-            drawn = drawn & cut.holds(points, spacing)
+            drawn = drawn & cut.holds(points)
             self.seen, self.slice = cut.seen, f", slice {cut.words}"
         self.axes, points = tuple("xyz"[axis] for axis in self.seen), points[:, self.seen]
         self.position = points[drawn]
@@ -396,7 +396,7 @@ class SceneFigure:
             places = scene.points[self.begin]
             particles = places[self.is_particle]
             cut = impinge.Cut(particles if len(particles) else scene.points, scene.case)
-            self.is_particle &= cut.holds(places, self.spacing)
+            self.is_particle &= cut.holds(places)
             seen, self.slice = cut.seen, f", particles of a slice {cut.words}" if len(particles) else ""
         self.axes = tuple("xyz"[axis] for axis in seen)
         self.points, self.normal = scene.points[:, seen], scene.normal[:, seen]
