@@ -43,6 +43,11 @@ def unit(vectors):
     return vectors / np.where(length > 0, length, 1)
 
 
+def areas(corners):
+    """Of triangles."""
+    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+
+
 def isosurface(points, spacing):
     """The surface around particles, half a spacing outside of the outermost ones: corners and normals of triangles."""
     nothing = np.empty((0, 3, 3))
@@ -168,16 +173,15 @@ class Walls:
 
 
 class Camera:
-    """An eye that sees all points, upright, and most of the walls' wet sides."""
+    """An eye that sees all points, upright, from where triangles with these normals and weights are seen best."""
 
-    def __init__(self, points, walls, up):
+    def __init__(self, points, normals, weights, up):
         self.up = up
         ahead = unit(np.eye(3)[np.argmin(np.abs(up))] - up[np.argmin(np.abs(up))] * up)
         basis = np.column_stack((ahead, np.cross(up, ahead), up))
         ways = [basis @ (np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)) for e in (ELEVATION, -ELEVATION) for a in AZIMUTHS]
-        area = np.linalg.norm(np.cross(walls.corners[:, 1] - walls.corners[:, 0], walls.corners[:, 2] - walls.corners[:, 0]), axis=1)
-        seen = np.array([(area * np.maximum(walls.normals @ way, 0)).sum() for way in ways])
-        back = ways[int(np.argmax(seen >= 0.98 * seen.max()))]  # the first of those that are as good
+        seen = np.array([(weights * np.maximum(normals @ way, 0)).sum() for way in ways])
+        back = ways[int(np.argmax(seen >= 0.9 * seen.max()))]  # the first of those that are about as good
         right = unit(np.cross(up, back))
         self.axes = np.column_stack((right, np.cross(back, right), back))
         low, high = points.min(axis=0), points.max(axis=0)
@@ -343,7 +347,22 @@ class Space:
         self.low, self.high = low, high
         margin = max(0.04 * np.max(high - low), self.spacing)
         self.fluid = fluid & (np.abs(snapshot.position - (low + high) / 2) <= (high - low) / 2 + margin).all(axis=1)
-        self.camera = Camera(np.array(list(itertools.product(*zip(low, high)))), self.walls, impinge.upright(run.case))
+        self.read_pressure()
+        force = self.part_area * np.nan_to_num(np.abs(self.pressure)).mean(axis=1)
+        box = np.array(list(itertools.product(*zip(low, high))))
+        self.camera = Camera(box, self.part_normals, force if force.any() else self.part_area, impinge.upright(run.case))
+
+    def read_pressure(self):
+        """The walls in parts, with the pressure at their corners: averaged where the snapshot has an average."""
+        snapshot, mean, on_walls = self.snapshot, self.snapshot.walls, self.snapshot.type == impinge.WALL
+        places, values = (mean["position"], mean["mean_pressure"]) if mean else (snapshot.position[on_walls], snapshot.pressure[on_walls])
+        finite = np.isfinite(places).all(axis=1) & np.isfinite(values)
+        self.wall_values = values[finite]
+        self.pressure_when = f"averaged over t = {mean['window'][0]:.4g} to {mean['window'][1]:.4g} s" if mean else snapshot.when
+        longest = max(self.spacing, 2 * np.sqrt(areas(self.walls.corners).sum() / MOST_TRIANGLES))
+        self.parts, self.part_normals = split(self.walls.corners, self.walls.normals, longest)
+        self.part_area = areas(self.parts)
+        self.pressure = values_near(places[finite], self.wall_values, self.parts, self.spacing)
 
     def figure(self, canvas, title, label, norm, colours):
         """A canvas as a figure, with edges of walls, scales along the axes and one of the colours."""
@@ -361,50 +380,40 @@ class Space:
         figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours), ax=axes, shrink=0.7, extend="both", label=label)
         return figure
 
-    def wall_canvas(self, colours_of=None):
-        """The walls alone, coloured by a function of places on them, or plain."""
-        canvas, walls = Canvas(self.camera), self.walls
-        ahead = self.camera.facing(walls.corners, walls.normals) > 0
-        corners, normals = walls.corners[ahead], walls.normals[ahead]
-        if colours_of:
-            area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
-            corners, normals = split(corners, normals, max(self.spacing, 2 * np.sqrt(area / MOST_TRIANGLES)))
-        colours = colours_of(corners) if colours_of else np.broadcast_to(WALL, corners.shape)
-        canvas.add(corners, np.repeat(normals[:, None], 3, axis=1), colours, 0.25)
-        return canvas, ~ahead
+    def canvas(self, corners, normals, colours):
+        """A picture of the walls' wet sides, in triangles."""
+        canvas = Canvas(self.camera)
+        ahead = self.camera.facing(corners, normals) > 0
+        # Glass covers a wall that stands on it.
+        canvas.add(corners[ahead], np.repeat(normals[ahead, None], 3, axis=1), colours[ahead], 0.25, slack=0.02 * self.spacing)
+        return canvas
+
+    def add_glass(self, canvas):
+        """The walls that are seen from their dry side."""
+        behind = self.camera.facing(self.walls.corners, self.walls.normals) <= 0
+        canvas.add_glass(self.walls.corners[behind], self.walls.normals[behind])
 
     def free_surface(self):
-        snapshot, fluid = self.snapshot, self.fluid
-        canvas, glass = self.wall_canvas()
-        corners, normals = isosurface(snapshot.position[fluid], self.spacing)
-        norm = matplotlib.colors.Normalize(*impinge.colour_range(snapshot.speed[fluid]))
-        colours = matplotlib.colormaps["cividis"]
+        """The fluid among the walls, coloured by its speed."""
+        snapshot, walls = self.snapshot, self.walls
+        points, speed = snapshot.position[self.fluid], snapshot.speed[self.fluid]
+        canvas = self.canvas(walls.corners, walls.normals, np.broadcast_to(WALL, walls.corners.shape))
+        norm, colours = matplotlib.colors.Normalize(*impinge.colour_range(speed)), matplotlib.colormaps["cividis"]
+        corners, normals = isosurface(points, self.spacing)
         if len(corners):
-            speed = values_near(snapshot.position[fluid], snapshot.speed[fluid], corners, self.spacing)
-            canvas.add(corners, normals, colours(norm(speed))[..., :3], 0.45, 0.25, self.spacing)
-        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass])
+            canvas.add(corners, normals, colours(norm(values_near(points, speed, corners, self.spacing)))[..., :3], 0.45, 0.25, self.spacing)
+        self.add_glass(canvas)
         return self.figure(canvas, f"free surface, {snapshot.when}", "speed [m/s]", norm, colours)
 
     def wall_pressure(self):
-        """None where there are no facets or no wall particles."""
-        snapshot = self.snapshot
-        mean = snapshot.walls
-        on_walls = snapshot.type == impinge.WALL
-        points, pressure = (mean["position"], mean["mean_pressure"]) if mean else (snapshot.position[on_walls], snapshot.pressure[on_walls])
-        when = f"averaged over t = {mean['window'][0]:.4g} to {mean['window'][1]:.4g} s" if mean else snapshot.when
-        finite = np.isfinite(points).all(axis=1) & np.isfinite(pressure)
-        points, pressure = points[finite], pressure[finite]
-        if not len(self.walls.corners) or not len(points):
+        """The walls, coloured by the pressure on them; grey where no particle measures it. None where there is nothing to draw."""
+        if not np.isfinite(self.pressure).any():
             return None
-        norm, colours = matplotlib.colors.Normalize(*impinge.colour_range(pressure)), matplotlib.colormaps["viridis"]
-
-        def colours_of(places):
-            values = values_near(points, pressure, places, self.spacing)
-            return np.where(np.isfinite(values)[..., None], colours(norm(values))[..., :3], WALL)
-
-        canvas, glass = self.wall_canvas(colours_of)
-        canvas.add_glass(self.walls.corners[glass], self.walls.normals[glass])
-        return self.figure(canvas, f"pressure on the walls, {when}", "pressure [Pa]", norm, colours)
+        norm, colours = matplotlib.colors.Normalize(*impinge.colour_range(self.wall_values)), matplotlib.colormaps["viridis"]
+        coloured = np.where(np.isfinite(self.pressure)[..., None], colours(norm(self.pressure))[..., :3], WALL)
+        canvas = self.canvas(self.parts, self.part_normals, coloured)
+        self.add_glass(canvas)
+        return self.figure(canvas, f"pressure on the walls, {self.pressure_when}", "pressure [Pa]", norm, colours)
 
 
 def figures(run, snapshot):
