@@ -310,7 +310,7 @@ def axes_of_box(axes, camera, low, high):
     """Scales along three edges of a box: the lowest ones in the picture, and the leftmost upright one."""
     upright = int(np.argmax(np.abs(camera.up)))
     middle = camera.project((low + high) / 2)[:2]
-    for axis in range(3):
+    for axis in np.flatnonzero(high > low):
         starts = [np.where(np.arange(3) == axis, low, np.where(pick, high, low)) for pick in itertools.product((0, 1), repeat=3) if not pick[axis]]
         centres = [camera.project(start + (high - low)[axis] / 2 * np.eye(3)[axis])[:2] for start in starts]
         start = starts[int(np.argmin([centre[0] if axis == upright else centre[1] for centre in centres]))]
@@ -344,12 +344,13 @@ class Space:
         if len(corners):
             corners = np.concatenate((corners, [low, high])) if fluid.any() else corners
             low, high = corners.min(axis=0), corners.max(axis=0)
-        self.low, self.high = low, high
+        self.low, self.high = low, np.where(np.any(high > low), high, low + self.spacing)
         margin = max(0.04 * np.max(high - low), self.spacing)
-        self.fluid = fluid & (np.abs(snapshot.position - (low + high) / 2) <= (high - low) / 2 + margin).all(axis=1)
+        near = np.abs(np.nan_to_num(snapshot.position) - (low + high) / 2) <= (high - low) / 2 + margin
+        self.fluid = fluid & near.all(axis=1)
         self.read_pressure()
         force = self.part_area * np.nan_to_num(np.abs(self.pressure)).mean(axis=1)
-        box = np.array(list(itertools.product(*zip(low, high))))
+        box = np.array(list(itertools.product(*zip(self.low, self.high))))
         self.camera = Camera(box, self.part_normals, force if force.any() else self.part_area, impinge.upright(run.case))
 
     def read_pressure(self):
@@ -419,6 +420,8 @@ class Space:
 def figures(run, snapshot):
     """The pictures of a snapshot in space, each with its name, one after the other."""
     space = Space(run, snapshot)
+    if not space.fluid.any() and not len(space.walls.corners):
+        return
     yield "free_surface", space.free_surface()
     figure = space.wall_pressure()
     if figure:
