@@ -115,7 +115,7 @@ class Walls:
         self.corners, self.normals, number = self.of_scene(run)
         sides = run.case.get("wall", [])
         moving = {wall["motion"] for wall in sides} - {"none"}
-        for motion in moving:
+        for motion in moving if len(number) else ():
             self.move(run, snapshot, np.isin(number, [k for k, wall in enumerate(sides, start=1) if wall["motion"] == motion]))
         self.edges = self.creases()
         both = np.isin(number, [k for k, wall in enumerate(sides, start=1) if wall["wet"] == "both"])
