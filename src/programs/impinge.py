@@ -410,9 +410,11 @@ class Run:
 
     @functools.cached_property
     def scene(self):
-        """The scene at the start; None where the directory has none."""
+        """The scene at the start; None where the directory has none, or a later --check's of other walls."""
         path = self.file("_scene.vtkhdf")
-        return Scene(path) if path.exists() else None
+        scene = Scene(path) if path.exists() else None
+        is_own = scene and all(scene.case.get(key) == self.case.get(key) for key in ("geometry", "wall", "motion"))
+        return scene if is_own else None
 
     @functools.cached_property
     def validation(self):
@@ -431,5 +433,5 @@ def pictures_in_space(run, snapshot, tell):
         tell(f"{error}; without scikit-image (Debian's python3-skimage) there are no pictures in space")
         return
     if run.case.get("wall") and run.scene is None:
-        tell(f"there is no {run.file('_scene.vtkhdf')}; without it the pictures in space have no walls")
+        tell(f"there is no {run.file('_scene.vtkhdf')} of this run; without it the pictures in space have no walls")
     yield from impinge_space.figures(run, snapshot)

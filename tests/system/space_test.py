@@ -246,9 +246,15 @@ class Runs(unittest.TestCase):
         kept = scene.rename(scene.with_suffix(".kept"))
         self.addCleanup(kept.rename, scene)
         errors, pictures = self.plot("box")
-        self.assertRegex(errors, r"^impinge-plot: there is no .*box_scene.vtkhdf; .*\n$")
+        self.assertRegex(errors, r"^impinge-plot: there is no .*box_scene.vtkhdf of this run; .*\n$")
         self.assertIn("free_surface", pictures)
         self.assertNotIn("wall_pressure", pictures)
+        # Of a later --check with other walls.
+        (self.root / "other").mkdir()
+        (self.root / "other/box.toml").write_text(CASE.replace("high = [0.6, 0.3, 0.1]", "high = [0.65, 0.3, 0.1]"))
+        done = call(BIN / "impinge", self.root / "other/box.toml", "--check", "--set", f"output.directory={self.root / 'box'}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIsNone(impinge.Run(self.root / "box").scene)
 
     def test_the_page_has_the_pictures(self):
         done = call(BIN / "impinge-report", self.root / "box")
