@@ -90,7 +90,7 @@ def show(source):
     if is_plane:
         balls(walls, view, 0.25 * spacing, preset, DiffuseColor=[0.4, 0.4, 0.4], ColorArrayName=["POINTS", ""])
     else:
-        simple.ColorBy(balls(half_of(walls, middle, "half of the walls"), view, 0.5 * spacing, preset), ("POINTS", "pressure"))
+        simple.ColorBy(balls(half_of(walls, middle, "half of the walls"), view, 0.6 * spacing, preset), ("POINTS", "pressure"))
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
     view.OrientationAxesVisibility = int(not is_plane)

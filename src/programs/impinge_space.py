@@ -336,10 +336,7 @@ class Space:
         self.run, self.snapshot, self.spacing = run, snapshot, run.spacing
         self.walls = Walls(run, snapshot)
         fluid = snapshot.fluid & snapshot.finite
-        low, high = np.zeros((2, 3))
-        if fluid.any():
-            low, high = impinge.bounds_of(snapshot.position[fluid])
-            low, high = low - 0.5 * self.spacing, high + 0.5 * self.spacing
+        low, high = impinge.bounds_of(snapshot.position[fluid]) if fluid.any() else np.zeros((2, 3))
         corners = self.walls.corners.reshape(-1, 3)
         if len(corners):
             corners = np.concatenate((corners, [low, high])) if fluid.any() else corners
