@@ -11,7 +11,7 @@ packages=(
   libopenmpi-dev openmpi-bin libpetsc-real-dev petsc-dev libhdf5-openmpi-dev libmetis-dev libassimp-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev clang-format
-  python3 python3-numpy python3-h5py python3-matplotlib python3-vtk9
+  python3 python3-numpy python3-h5py python3-matplotlib python3-skimage python3-vtk9
   libjs-dygraphs libjs-three
   python3-jsonschema python3-markdown-it
   file

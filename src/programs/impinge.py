@@ -74,6 +74,41 @@ def colour_range(values):
     return float(low), float(high if high > low else low + 1.0)
 
 
+def bounds_of(points):
+    """The corners of the box around points, without the outermost 0.3 % on each side: drops that fly off."""
+    return np.quantile(points, 0.003, axis=0), np.quantile(points, 0.997, axis=0)
+
+
+def upright(case):
+    """The direction against gravity; without gravity that of z, in two dimensions of y."""
+    gravity = np.array(case["fluid"]["gravity"], dtype=float)
+    return -gravity / np.linalg.norm(gravity) if gravity.any() else np.eye(gravity.size)[-1]
+
+
+class Cut:
+    """The upright plane through the middle of points in space, along the longer of their horizontal sides.
+
+    `seen` are the axes to the right and up, `across` is the third one, and the plane is at `place` on it [m].
+    """
+
+    def __init__(self, points, case):
+        up = int(np.abs(upright(case)).argmax())
+        low, high = bounds_of(points) if len(points) else np.zeros((2, 3))
+        first, second = (axis for axis in range(3) if axis != up)
+        along, self.across = (first, second) if (high - low)[first] > 0.95 * (high - low)[second] else (second, first)
+        self.spacing = float(case["particles"]["spacing"])
+        grain = 0.1 * self.spacing
+        self.seen, self.place = [along, up], grain * round(float((low + high)[self.across]) / 2 / grain)
+
+    def holds(self, points):
+        """True for the particles in the plane; both layers next to it where it is in the middle between two."""
+        return np.abs(points[:, self.across] - self.place) <= 0.501 * self.spacing
+
+    @property
+    def words(self):
+        return f"at {'xyz'[self.across]} = {self.place:.4g} m"
+
+
 class Table(dict):
     """The columns of a CSV file by name, as arrays; `units` has their units, "1" where there is none.
 
@@ -176,6 +211,12 @@ class Snapshot:
         return values
 
     @property
+    def when(self):
+        """Time and step in words, and how the run has ended where that is not well."""
+        status = "" if self.status in ("finished", "running") else f" ({self.status})"
+        return f"t = {self.time:.4g} s, step {self.step}{status}"
+
+    @property
     def fluid(self):
         """True for fluid particles, those of an inlet's rows among them."""
         return np.isin(self.type, (FLUID, INLET))
@@ -204,6 +245,35 @@ class Snapshot:
             group = file["wall"]
             window = (float(group.attrs["window_begin"]), float(group.attrs["window_end"]))
             return {"window": window, **{name: group[name][:] for name in group}}
+
+
+class Scene:
+    """The scene at the start, <case>_scene.vtkhdf: cells, each of some `points` from `begin` to `end`.
+
+    Of each cell `item` says what it is (wall, inlet, outlet, fluid ...), `number` its place in its list of the case and
+    `normal` the direction out of a wall's wet side, or that of an inlet's flow. `names` has the names of each item.
+    """
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as file:
+            grid = file["VTKHDF"]
+            pieces = np.stack([grid[f"NumberOf{name}"][:] for name in ("Points", "Cells")], axis=1)
+            offsets = grid["Offsets"][:]
+            self.points, cells = grid["Points"][:], {name: grid["CellData"][name][:] for name in ("item", "number", "normal")}
+            words = text_of(file.attrs["items"]).split("\n")
+            self.names = {word: text_of(names).split("\n") for word, names in file["names"].attrs.items()}
+            self.name, self.dimension = text_of(file.attrs["name"]), int(file.attrs["dimension"])
+            self.spacing = float(file.attrs["spacing"])
+            self.case = tomllib.loads(text_of(file.attrs["case"]))
+        # Each piece counts its points and cells from 0, and has one offset more than cells.
+        begin, end, first = [], [], 0
+        for k, (_, count) in enumerate(pieces):
+            own = offsets[first : first + count + 1] + pieces[:k, 0].sum()
+            begin.append(own[:-1])
+            end.append(own[1:])
+            first += count + 1
+        self.begin, self.end = np.concatenate(begin), np.concatenate(end)
+        self.item, self.number, self.normal = np.array(words)[cells["item"]], cells["number"], cells["normal"]
 
 
 class Validation:
@@ -343,7 +413,29 @@ class Run:
         return marks
 
     @functools.cached_property
+    def scene(self):
+        """The scene at the start; None where the directory has none, or a later --check's of other walls."""
+        path = self.file("_scene.vtkhdf")
+        scene = Scene(path) if path.exists() else None
+        is_own = scene and all(scene.case.get(key) == self.case.get(key) for key in ("geometry", "wall", "motion"))
+        return scene if is_own else None
+
+    @functools.cached_property
     def validation(self):
         """What impinge-validate has written of the run; None where it has not."""
         folder = self.directory / "validation"
         return Validation(folder) if (folder / "validation.json").exists() else None
+
+
+def pictures_in_space(run, snapshot, tell):
+    """The figures of impinge_space, each with its name; none of a plane run. Calls tell(text) for what is missing."""
+    if snapshot.dimension != 3:
+        return
+    try:
+        import impinge_space
+    except ImportError as error:
+        tell(f"{error}; without scikit-image (Debian's python3-skimage) there are no pictures in space")
+        return
+    if run.case.get("wall") and run.scene is None:
+        tell(f"there is no {run.file('_scene.vtkhdf')} of this run; without it the pictures in space have no walls")
+    yield from impinge_space.figures(run, snapshot)

@@ -3,7 +3,7 @@
 In the window of ParaView 5.11 or newer: open <case>.xmf of the run, then Macros > Import new macro, this file.
 Without a window, draw the last snapshot: pvbatch impinge_paraview.py DIR PICTURE.png
 
-In three dimensions the fluid is cut in the middle, so that you see the pressure inside.
+In three dimensions fluid and walls are cut in the middle, so that you see the pressure inside and on the walls.
 """
 
 import pathlib
@@ -46,6 +46,14 @@ def balls(source, view, radius, preset, **properties):
     return simple.Show(source, view, Representation="Point Gaussian", GaussianRadius=radius, ShaderPreset=preset, **properties)
 
 
+def half_of(source, middle, name):
+    """The particles behind a plane through the middle, as the eye sees them."""
+    half = simple.Clip(Input=source, ClipType="Plane", Invert=0)
+    half.ClipType.Origin, half.ClipType.Normal = middle, [0, 1, 0]
+    simple.RenameSource(name, half)
+    return half
+
+
 def show(source):
     """Shows the run that `source` reads in the active view, and gives the view."""
     view = simple.GetActiveViewOrCreate("RenderView")
@@ -62,12 +70,8 @@ def show(source):
     spacing, is_plane = spacing_of(data), low[2] == high[2]
     preset = "Plain circle" if is_plane else "Sphere"
 
-    shown = fluid
-    if not is_plane:
-        shown = simple.Clip(Input=fluid, ClipType="Plane", Invert=0)
-        shown.ClipType.Origin, shown.ClipType.Normal = [(a + b) / 2 for a, b in zip(low, high)], [0, 1, 0]
-        simple.RenameSource("half of the fluid", shown)
-    display = balls(shown, view, 0.5 * spacing, preset)
+    middle = [(a + b) / 2 for a, b in zip(low, high)]
+    display = balls(fluid if is_plane else half_of(fluid, middle, "half of the fluid"), view, 0.5 * spacing, preset)
     simple.ColorBy(display, ("POINTS", "pressure"))
     colours = simple.GetColorTransferFunction("pressure")
     pressure = vtk_to_numpy(data.GetPointData().GetArray("pressure"))
@@ -85,6 +89,8 @@ def show(source):
     balls(surface, view, 0.5 * spacing, preset, DiffuseColor=[0.84, 0.37, 0.0], ColorArrayName=["POINTS", ""], **look)
     if is_plane:
         balls(walls, view, 0.25 * spacing, preset, DiffuseColor=[0.4, 0.4, 0.4], ColorArrayName=["POINTS", ""])
+    else:
+        simple.ColorBy(balls(half_of(walls, middle, "half of the walls"), view, 0.6 * spacing, preset), ("POINTS", "pressure"))
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
     view.OrientationAxesVisibility = int(not is_plane)

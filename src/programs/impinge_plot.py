@@ -3,7 +3,8 @@
 
 impinge-plot DIR draws a snapshot in DIR, the last or the one that --step or --time names, and the tables of the run:
 pressure.png, speed.png, surface.png, and history.png, probes.png, gauges.png, sections.png, forces.png, outlets.png where
-there is such a table, into DIR/<case>_figures. In three dimensions it draws a slice.
+there is such a table, into DIR/<case>_figures. In three dimensions these show a slice, and free_surface.png and
+wall_pressure.png show the fluid among the walls, and the pressure on them, in space.
 
 impinge-plot --scene FILE draws the scene that impinge --check has written, <case>_scene.vtkhdf, as <case>_scene.png.
 
@@ -14,7 +15,8 @@ If DIR/validation holds what impinge-validate wrote of a jet, it also draws the 
 pressure.png, wall_pressure.png, film_thickness.png and ranks.png in DIR/validation; of a wedge or a cup
 wall_pressure.png; of a round jet wall_pressure.png, film_thickness.png and wall_map.png.
 
-Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's. Exit code 3: neither has them.
+Needs h5py and matplotlib: of the first python3 on the PATH, else of the system's. Exit code 3: neither has them. The
+pictures in space need scikit-image, too; without it the others are drawn.
 """
 
 import argparse
@@ -251,19 +253,18 @@ def plot_ranks(run):
 
 
 class Slice:
-    """The particles of a snapshot, in metres; of three dimensions those of a slice through the middle."""
+    """The particles of a snapshot, in metres; of three dimensions those that a cut holds."""
 
-    def __init__(self, snapshot, spacing):
-        self.time, self.step, self.status, self.dimension = snapshot.time, snapshot.step, snapshot.status, snapshot.dimension
-        self.spacing, points, drawn = spacing, snapshot.position, snapshot.finite
+    def __init__(self, snapshot, spacing, cut):
+        self.time, self.step, self.when, self.spacing = snapshot.time, snapshot.step, snapshot.when, spacing
+        points, drawn = snapshot.position, snapshot.finite
         self.not_drawn = np.count_nonzero(~drawn)
-        self.axes, self.slice = ("x", "y"), ""
-        if self.dimension == 3:
-            middle = 0.5 * (points[drawn, 1].min() + points[drawn, 1].max()) if drawn.any() else 0.0
-            drawn = drawn & (np.abs(points[:, 1] - middle) <= 0.5 * self.spacing)
-            points = points[:, [0, 2]]
-            self.axes, self.slice = ("x", "z"), f", slice at y = {middle:.4g} m"
-        self.position = points[drawn, :2]
+        self.seen, self.slice = [0, 1], ""
+        if cut:
+            drawn = drawn & cut.holds(points)
+            self.seen, self.slice = cut.seen, f", slice {cut.words}"
+        self.axes, points = tuple("xyz"[axis] for axis in self.seen), points[:, self.seen]
+        self.position = points[drawn]
         for name in ("pressure", "type", "free_surface", "speed", "fluid"):
             setattr(self, name, getattr(snapshot, name)[drawn])
         if not self.position.size:
@@ -277,7 +278,11 @@ class Figures:
 
     def __init__(self, run, step, time):
         self.run = run
-        self.snapshot = Slice(run.snapshot(step, time), run.spacing)
+        self.whole, self.cut = run.snapshot(step, time), None
+        if self.whole.dimension == 3:
+            fluid = self.whole.finite & self.whole.fluid
+            self.cut = impinge.Cut(self.whole.position[fluid if fluid.any() else self.whole.finite], run.case)
+        self.snapshot = Slice(self.whole, run.spacing, self.cut)
         self.ending = "" if step is None and time is None else f"_{self.snapshot.step:08}"
         self.folder = run.file("_figures")
         self.folder.mkdir(exist_ok=True)
@@ -286,6 +291,7 @@ class Figures:
         self.field("pressure", self.snapshot.pressure, "pressure [Pa]", "viridis")
         self.field("speed", self.snapshot.speed, "speed [m/s]", "cividis")
         self.surface()
+        self.space()
         self.tables()
 
     def save(self, figure, name):
@@ -309,8 +315,7 @@ class Figures:
         # Without ghosts, wall particles stand on the surface.
         draw_particles(axes, snapshot, walls, 1.0 if np.any(snapshot.type == GHOST) else 0.6, facecolors="0.35")
         missing = f"; {snapshot.not_drawn} particles not finite" if snapshot.not_drawn else ""
-        status = "" if snapshot.status in ("finished", "running") else f" ({snapshot.status})"
-        axes.set_title(f"{self.run.name}: t = {snapshot.time:.4g} s, step {snapshot.step}{status}{snapshot.slice}{missing}", fontsize=10)
+        axes.set_title(f"{self.run.name}: {snapshot.when}{snapshot.slice}{missing}", fontsize=10)
 
     def field(self, name, values, label, colours):
         figure, axes = self.panel()
@@ -324,7 +329,7 @@ class Figures:
     def film(self):
         """The pressure of all snapshots, with one scale: an mp4 where ffmpeg is at hand, else a gif."""
         def slices():
-            return (Slice(snapshot, self.run.spacing) for snapshot in self.run.snapshots)
+            return (Slice(snapshot, self.run.spacing, self.cut) for snapshot in self.run.snapshots)
 
         lows, highs, samples = [], [], []
         for piece in slices():
@@ -364,12 +369,16 @@ class Figures:
         axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
         self.save(figure, f"surface{self.ending}.png")
 
+    def space(self):
+        """The pictures of a run in space."""
+        for name, figure in impinge.pictures_in_space(self.run, self.whole, lambda text: print(f"impinge-plot: {text}", file=sys.stderr)):
+            self.save(figure, f"{name}{self.ending}.png")
+
     def mark_observers(self, axes):
         """Fixed probes, gauges and sections."""
-        seen = [0, 2] if self.snapshot.dimension == 3 else [0, 1]
         styles = {"probe": dict(marker="x", ls="", ms=7, mew=1.5), "gauge": dict(ls="--", lw=1), "section": dict(ls=":", lw=1)}
         for mark in self.run.observers:
-            axes.plot(*np.array(mark["points"], dtype=float)[:, seen].T, color="black", **styles[mark["kind"]])
+            axes.plot(*np.array(mark["points"], dtype=float)[:, self.snapshot.seen].T, color="black", **styles[mark["kind"]])
         for kind, style in (("probe", "x"), ("gauge", "--"), ("section", ":")):
             if self.run.case.get(kind):
                 axes.plot([], [], style, color="black", label=kind)
@@ -409,34 +418,19 @@ class SceneFigure:
     AREAS = ("damping", "outlet")
 
     def __init__(self, path):
-        with h5py.File(path, "r") as file:
-            grid = file["VTKHDF"]
-            pieces = np.stack([grid[f"NumberOf{name}"][:] for name in ("Points", "Cells")], axis=1)
-            offsets, places = grid["Offsets"][:], np.concatenate(([0, 0], pieces.sum(axis=0)))
-            points, cells = grid["Points"][:], {name: grid["CellData"][name][:] for name in ("item", "number", "normal")}
-            words = impinge.text_of(file.attrs["items"]).split("\n")
-            self.names = {word: impinge.text_of(names).split("\n") for word, names in file["names"].attrs.items()}
-            self.case, dimension = impinge.text_of(file.attrs["name"]), int(file.attrs["dimension"])
-            self.spacing = float(file.attrs["spacing"])
-        # Each piece counts its points and cells from 0, and has one offset more than cells.
-        begin, end, first = [], [], 0
-        for k, (_, count) in enumerate(pieces):
-            own = offsets[first : first + count + 1] + pieces[:k, 0].sum()
-            begin.append(own[:-1])
-            end.append(own[1:])
-            first += count + 1
-        self.begin, self.end = np.concatenate(begin), np.concatenate(end)
-        self.item = np.array(words)[cells["item"]]
-        self.number, self.axes = cells["number"], ("x", "z") if dimension == 3 else ("x", "y")
-        seen = [0, 2] if dimension == 3 else [0, 1]
-        self.points, self.normal = points[:, seen], cells["normal"][:, seen]
+        scene = impinge.Scene(path)
+        self.case, self.spacing, self.names = scene.name, scene.spacing, scene.names
+        self.begin, self.end, self.item, self.number = scene.begin, scene.end, scene.item, scene.number
         self.is_particle = (self.end - self.begin == 1) & (self.item != "probe")
-        self.slice = ""
-        if dimension == 3 and self.is_particle.any():
-            depth = points[self.begin, 1]
-            middle = 0.5 * (depth[self.is_particle].min() + depth[self.is_particle].max())
-            self.is_particle &= np.abs(depth - middle) <= 0.5 * self.spacing
-            self.slice = f", particles of a slice at y = {middle:.4g} m"
+        seen, self.slice = [0, 1], ""
+        if scene.dimension == 3:
+            places = scene.points[self.begin]
+            particles = places[self.is_particle]
+            cut = impinge.Cut(particles if len(particles) else scene.points, scene.case)
+            self.is_particle &= cut.holds(places)
+            seen, self.slice = cut.seen, f", particles of a slice {cut.words}" if len(particles) else ""
+        self.axes = tuple("xyz"[axis] for axis in seen)
+        self.points, self.normal = scene.points[:, seen], scene.normal[:, seen]
         shown = [self.points[a:b] for a, b, item, one in zip(self.begin, self.end, self.item, self.is_particle)
                  if item != "domain" and (one or b - a > 1 or item == "probe")]
         shown = np.vstack(shown or [self.points])

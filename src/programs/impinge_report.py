@@ -7,13 +7,15 @@ go on. A run that goes on can be looked at: the page shows what there is, and is
 again.
 
 Needs h5py and matplotlib, of the first python3 on the PATH, else of the system's; and Debian's libjs-dygraphs and
-libjs-three, whose code the page holds. Exit code 3: one of these is missing.
+libjs-three, whose code the page holds. Exit code 3: one of these is missing. The pictures of a run in space need
+scikit-image, too.
 """
 
 import argparse
 import base64
 import datetime
 import html
+import io
 import json
 import os
 import pathlib
@@ -305,12 +307,24 @@ def metrics(validation):
     return f'<div class="pair"><div>{words}{measured}</div>{drawn}</div>'
 
 
+def image(data, words):
+    """A PNG picture in the page."""
+    return f'<img alt="{html.escape(words)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+
+
 def picture(path, words):
     """An image in the page; nothing where there is no file."""
-    if not path.exists():
-        return ""
-    data = base64.b64encode(path.read_bytes()).decode()
-    return f'<img alt="{html.escape(words)}" src="data:image/png;base64,{data}">'
+    return image(path.read_bytes(), words) if path.exists() else ""
+
+
+def pictures_in_space(run, snapshot):
+    """The section of the pictures in space; nothing where there are none."""
+    images = []
+    for name, figure in impinge.pictures_in_space(run, snapshot, lambda text: print(f"impinge-report: {text}", file=sys.stderr)):
+        file = io.BytesIO()
+        figure.savefig(file, format="png", bbox_inches="tight")
+        images.append(f"<div>{image(file.getvalue(), name.replace('_', ' '))}</div>")
+    return f'<section><h2>In space</h2><div class="pair">{"".join(images)}</div></section>' if images else ""
 
 
 def onward(run, snapshot):
@@ -371,7 +385,7 @@ def write_page(run):
         "computed": table(computed(run, snapshot)), "progress": table(progress_rows),
         "warnings": "".join(f"<li>{html.escape(text)}</li>" for text in warnings) or "<li class=none>None.</li>",
         "note": html.escape(frames.note), "metrics": metrics(run.validation), "onward": onward(run, snapshot),
-        "scene": scene,
+        "scene": scene, "space": pictures_in_space(run, snapshot),
         "hint": "" if scene else '<p class="quiet"><code>impinge CASE --check</code> draws walls, inlets, outlets and what is observed.</p>',
         "case": html.escape(snapshot.attributes["case"]),
         "libraries": "".join(f"<script>{library(name)}</script>\n" for name in LIBRARIES),

@@ -358,6 +358,7 @@ bool start_run(MPI_Comm comm, const Case& config) {
     fmt::print("impinge {}: {} to t = {} s with {} particles on {} rank(s), output in {}\n", IMPINGE_VERSION,
                config.name, config.time.end, simulation.report().particles, ranks_of(comm), config.output.directory);
   if (first) print_warnings(config, report_scene(config, config));
+  if constexpr (Dim == 3) write_scene(comm, config, simulation.particles());  // for pictures of the walls
   output.save(simulation, "running");
   return run(comm, config, simulation, observers, output);
 }

@@ -50,9 +50,10 @@ class ParaView(unittest.TestCase):
         self.assertGreater(self.share(picture, 0.13, 0.57, 0.55), 0.005)  # its middle
         self.assertGreater(self.share(picture, 0.84, 0.37, 0.0), 0.002)  # the free surface
 
-    def test_a_run_in_space_shows_the_pressure_inside(self):
+    def test_a_run_in_space_shows_the_pressure_inside_and_on_the_walls(self):
         red, green, blue = np.moveaxis(self.picture_of("input/hydrostatic-3d.toml"), -1, 0)
         self.assertGreater(np.mean((green > red + 0.05) & (blue > red + 0.05)), 0.02)  # teal, the middle, also in the shade
+        self.assertGreater(np.mean((red > green + 0.1) & (blue > green + 0.15) & (blue < 0.5)), 0.02)  # violet, the dry walls
 
     def test_a_directory_without_a_run_is_told(self):
         done = call(*DISPLAY, "pvbatch", SCRIPT, self.folder, self.folder / "picture.png")

@@ -47,6 +47,7 @@ class Impinge(CMakePackage):
     depends_on("py-numpy", type=("build", "run"))
     depends_on("py-h5py", type=("build", "run"))
     depends_on("py-matplotlib", type=("build", "run"))
+    depends_on("py-scikit-image", type="run")
 
     generator("ninja")
 
