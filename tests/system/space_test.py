@@ -185,6 +185,32 @@ class Runs(unittest.TestCase):
         done = call(BIN / "impinge", path, "--set", f"output.directory={cls.root / name}", *words)
         assert done.returncode == 0, done.stderr
 
+    def test_the_sides_of_a_plate_have_pressures_of_their_own(self):
+        self.run_of("plate", """
+            geometry = "scene"
+            dimension = 3
+            fluid.gravity = [0.0, 0.0, -9.81]
+            particles.spacing = 0.05
+            time = {end = 4e-3, dt = 2e-3}
+            domain = {low = [-0.4, -0.4, -0.4], high = [0.8, 0.8, 0.8]}
+            [[fluid.region]]
+            shape = "box"
+            low = [0.0, 0.0, 0.0]
+            high = [0.4, 0.4, 0.4]
+            [[wall]]
+            name = "plate"
+            shape = "polygon"
+            points = [[-0.2, -0.2, 0.0], [0.6, -0.2, 0.0], [0.6, 0.6, 0.0], [-0.2, 0.6, 0.0]]
+            wet = "both"
+            """)
+        run = impinge.Run(self.root / "plate")
+        space = impinge_space.Space(run, run.snapshot())
+        middle = np.linalg.norm(space.parts.mean(axis=1) - [0.2, 0.2, 0.0], axis=1) < 0.1
+        above = space.part_normals[:, 2] > 0
+        self.assertGreater(space.pressure[middle & above].min(), 100)
+        self.assertEqual(np.abs(space.pressure[~above]).max(), 0)
+        self.assertGreater(space.camera.axes[2, 2], 0)
+
     def plot(self, name, *words, environment=None):
         """What impinge-plot says on its error stream, and the pictures that it has drawn."""
         folder = self.root / name / f"{name}_figures"
