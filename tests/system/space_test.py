@@ -162,11 +162,14 @@ class Cut(unittest.TestCase):
         for gravity, counts, seen, across in (([0, 0, -9.81], (9, 4, 5), [0, 2], 1), ([0, 0, -9.81], (4, 9, 5), [1, 2], 0),
                                               ([0, 0, 0], (5, 5, 5), [0, 2], 1), ([0, 9.81, 0], (4, 5, 9), [2, 1], 0)):
             case = {"fluid": {"gravity": gravity}, "particles": {"spacing": 1.0}}
-            cut = impinge.Cut(lattice(*counts), case)
+            cut = impinge.Cut(lattice(*counts), lattice(*counts), case)
             self.assertEqual((cut.seen, cut.across), (seen, across))
             held = lattice(*counts)[cut.holds(lattice(*counts))]
             layers = 2 - counts[across] % 2  # the middle one, or both beside the middle
             self.assertEqual(len(held), layers * len(lattice(*counts)) // counts[across])
+        walls, case["fluid"]["gravity"] = np.array([[0.0, 0.0, 0.0], [9.0, 5.0, 1.0]]), [0, 0, -9.81]
+        cut = impinge.Cut(lattice(2, 4, 4), walls, case)  # a column in a long tank
+        self.assertEqual((cut.seen, cut.place), ([0, 2], 2.0))
 
 
 class Runs(unittest.TestCase):
