@@ -86,18 +86,19 @@ def upright(case):
 
 
 class Cut:
-    """The upright plane through the middle of points in space, along the longer of their horizontal sides.
+    """The upright plane through the middle of fluid in space, along the longer horizontal side of fluid and walls.
 
     `seen` are the axes to the right and up, `across` is the third one, and the plane is at `place` on it [m].
     """
 
-    def __init__(self, points, case):
+    def __init__(self, fluid, points, case):
         up = int(np.abs(upright(case)).argmax())
         low, high = bounds_of(points) if len(points) else np.zeros((2, 3))
         first, second = (axis for axis in range(3) if axis != up)
         along, self.across = (first, second) if (high - low)[first] > 0.95 * (high - low)[second] else (second, first)
         self.spacing = float(case["particles"]["spacing"])
         grain = 0.1 * self.spacing
+        low, high = bounds_of(fluid) if len(fluid) else (low, high)
         self.seen, self.place = [along, up], grain * round(float((low + high)[self.across]) / 2 / grain)
 
     def holds(self, points):

@@ -280,8 +280,8 @@ class Figures:
         self.run = run
         self.whole, self.cut = run.snapshot(step, time), None
         if self.whole.dimension == 3:
-            fluid = self.whole.finite & self.whole.fluid
-            self.cut = impinge.Cut(self.whole.position[fluid if fluid.any() else self.whole.finite], run.case)
+            finite = self.whole.finite
+            self.cut = impinge.Cut(self.whole.position[finite & self.whole.fluid], self.whole.position[finite], run.case)
         self.snapshot = Slice(self.whole, run.spacing, self.cut)
         self.ending = "" if step is None and time is None else f"_{self.snapshot.step:08}"
         self.folder = run.file("_figures")
@@ -425,10 +425,11 @@ class SceneFigure:
         seen, self.slice = [0, 1], ""
         if scene.dimension == 3:
             places = scene.points[self.begin]
-            particles = places[self.is_particle]
-            cut = impinge.Cut(particles if len(particles) else scene.points, scene.case)
+            particles = places[self.is_particle & np.isin(self.item, ("fluid", "inlet"))]
+            inside = np.repeat(self.item != "domain", self.end - self.begin)
+            cut = impinge.Cut(particles, scene.points[inside], scene.case)
             self.is_particle &= cut.holds(places)
-            seen, self.slice = cut.seen, f", particles of a slice {cut.words}" if len(particles) else ""
+            seen, self.slice = cut.seen, f", particles of a slice {cut.words}" if self.is_particle.any() else ""
         self.axes = tuple("xyz"[axis] for axis in seen)
         self.points, self.normal = scene.points[:, seen], scene.normal[:, seen]
         shown = [self.points[a:b] for a, b, item, one in zip(self.begin, self.end, self.item, self.is_particle)

@@ -287,15 +287,14 @@ class Canvas:
 
     def visible(self, lines, slack):
         """The pieces of lines that nothing hides by more than a slack [m]: two ends each in the picture."""
-        pieces = [np.empty((0, 2, 3))]
-        for begin, end in self.camera.project(lines):
-            count = int(np.clip(np.linalg.norm((end - begin)[:2]) / 3, 1, 500))
-            along = begin + np.linspace(0, 1, count + 1)[:, None] * (end - begin)
-            middle = (along[1:] + along[:-1]) / 2
-            column, row = np.clip((SAMPLES * middle[:, :2]).astype(int), 0, self.size - 1).T
-            hidden = self.near[row * self.size[0] + column]
-            pieces.append(np.stack((along[:-1], along[1:]), axis=1)[middle[:, 2] > hidden / (1 + slack * hidden)])
-        return np.concatenate(pieces)[..., :2]
+        begin, end = np.moveaxis(self.camera.project(lines), 1, 0)
+        count = np.ceil(np.linalg.norm((end - begin)[:, :2], axis=1) / 3).astype(int)
+        line = np.repeat(np.arange(count.size), count)
+        k = np.arange(line.size) - np.repeat(np.cumsum(count) - count, count)
+        first, middle, last = (begin[line] + ((k + part) / count[line])[:, None] * (end - begin)[line] for part in (0, 0.5, 1))
+        column, row = np.clip((SAMPLES * middle[:, :2]).astype(int), 0, self.size - 1).T
+        hidden = self.near[row * self.size[0] + column]
+        return np.stack((first, last), axis=1)[middle[:, 2] > hidden / (1 + slack * hidden)][..., :2]
 
     def picture(self):
         """Red, green, blue and opacity of the pixels."""
@@ -360,7 +359,21 @@ class Space:
         longest = max(self.spacing, 2 * np.sqrt(areas(self.walls.corners).sum() / MOST_TRIANGLES))
         self.parts, self.part_normals = split(self.walls.corners, self.walls.normals, longest)
         self.part_area = areas(self.parts)
-        self.pressure = values_near(places[finite], self.wall_values, self.parts, self.spacing)
+        # Sides that turn away from each other do not mix, however near they are: the direction counts as a place, too.
+        normals = np.repeat(self.part_normals[:, None], 3, axis=1)
+        sided = [np.concatenate((points, 2 * self.spacing * directions), axis=-1)
+                 for points, directions in ((places[finite], self.normals_at(places[finite])), (self.parts, normals))]
+        self.pressure = values_near(sided[0], self.wall_values, sided[1], self.spacing)
+
+    def normals_at(self, places):
+        """Out of the wet side that wall particles belong to: they stand a millionth of a spacing before it."""
+        if not len(self.parts):
+            return np.zeros_like(places)
+        middles = self.parts.mean(axis=1)
+        nearest = cKDTree(middles).query(places, k=np.arange(1, min(8, len(middles)) + 1))[1]
+        rise = np.einsum("nkj,nkj->nk", places[:, None] - middles[nearest], self.part_normals[nearest])
+        best = np.abs(rise - 1e-6 * self.spacing).argmin(axis=1)
+        return self.part_normals[nearest[np.arange(len(places)), best]]
 
     def figure(self, canvas, title, label, norm, colours):
         """A canvas as a figure, with edges of walls, scales along the axes and one of the colours."""

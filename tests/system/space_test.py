@@ -162,11 +162,14 @@ class Cut(unittest.TestCase):
         for gravity, counts, seen, across in (([0, 0, -9.81], (9, 4, 5), [0, 2], 1), ([0, 0, -9.81], (4, 9, 5), [1, 2], 0),
                                               ([0, 0, 0], (5, 5, 5), [0, 2], 1), ([0, 9.81, 0], (4, 5, 9), [2, 1], 0)):
             case = {"fluid": {"gravity": gravity}, "particles": {"spacing": 1.0}}
-            cut = impinge.Cut(lattice(*counts), case)
+            cut = impinge.Cut(lattice(*counts), lattice(*counts), case)
             self.assertEqual((cut.seen, cut.across), (seen, across))
             held = lattice(*counts)[cut.holds(lattice(*counts))]
             layers = 2 - counts[across] % 2  # the middle one, or both beside the middle
             self.assertEqual(len(held), layers * len(lattice(*counts)) // counts[across])
+        walls, case["fluid"]["gravity"] = np.array([[0.0, 0.0, 0.0], [9.0, 5.0, 1.0]]), [0, 0, -9.81]
+        cut = impinge.Cut(lattice(2, 4, 4), walls, case)  # a column in a long tank
+        self.assertEqual((cut.seen, cut.place), ([0, 2], 2.0))
 
 
 class Runs(unittest.TestCase):
@@ -184,6 +187,32 @@ class Runs(unittest.TestCase):
         path.write_text(text)
         done = call(BIN / "impinge", path, "--set", f"output.directory={cls.root / name}", *words)
         assert done.returncode == 0, done.stderr
+
+    def test_the_sides_of_a_plate_have_pressures_of_their_own(self):
+        self.run_of("plate", """
+            geometry = "scene"
+            dimension = 3
+            fluid.gravity = [0.0, 0.0, -9.81]
+            particles.spacing = 0.05
+            time = {end = 4e-3, dt = 2e-3}
+            domain = {low = [-0.4, -0.4, -0.4], high = [0.8, 0.8, 0.8]}
+            [[fluid.region]]
+            shape = "box"
+            low = [0.0, 0.0, 0.0]
+            high = [0.4, 0.4, 0.4]
+            [[wall]]
+            name = "plate"
+            shape = "polygon"
+            points = [[-0.2, -0.2, 0.0], [0.6, -0.2, 0.0], [0.6, 0.6, 0.0], [-0.2, 0.6, 0.0]]
+            wet = "both"
+            """)
+        run = impinge.Run(self.root / "plate")
+        space = impinge_space.Space(run, run.snapshot())
+        middle = np.linalg.norm(space.parts.mean(axis=1) - [0.2, 0.2, 0.0], axis=1) < 0.1
+        above = space.part_normals[:, 2] > 0
+        self.assertGreater(space.pressure[middle & above].min(), 100)
+        self.assertEqual(np.abs(space.pressure[~above]).max(), 0)
+        self.assertGreater(space.camera.axes[2, 2], 0)
 
     def plot(self, name, *words, environment=None):
         """What impinge-plot says on its error stream, and the pictures that it has drawn."""
