@@ -89,7 +89,7 @@ class Install(unittest.TestCase):
         (self.folder / "case.toml").touch()
         (self.folder / "other.txt").touch()
         self.assertEqual(self.completions("impinge", "--pl"), ["--plan"])
-        self.assertEqual(self.completions("impinge", "--new", "dam"), ["dam-break"])
+        self.assertEqual(self.completions("impinge", "--new", "dam"), ["dam-break", "dam-break-box"])
         self.assertEqual(self.completions("impinge", "c"), ["case.toml"])
         self.assertEqual(self.completions("impinge", "o"), ["output"] if (self.folder / "output").exists() else [])
         self.assertEqual(self.completions("impinge", "--set", "kernel.ty"), ["kernel.type="])
