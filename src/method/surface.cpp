@@ -15,49 +15,57 @@ constexpr double agitated = 0.2;     // likewise from which on the calm is least
 constexpr double least_calm = 0.5;   // still less would only make the surface noisier
 constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
 
-// Over the lattice points beyond a flat surface that a particle at a depth misses, sum W (1 + d_g/depth). Lengths in
-// dp.
-template <int Dim>
-double missing_weight(KernelType type, double effective_radius, double depth) {
+// The sums of term(W, d_g, depth) over the lattice points beyond a flat surface that a particle misses, at least_depth
+// and from step to step. Lengths in dp.
+template <int Dim, class Term>
+std::vector<double> missing(KernelType type, double effective_radius, const Term& term) {
   const int reach = static_cast<int>(std::ceil(effective_radius));
-  double sum = 0.0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int z = Dim == 2 ? 0 : -reach; z <= (Dim == 2 ? 0 : reach); ++z) {
-      for (double beyond = 0.5; depth + beyond < effective_radius; beyond += 1.0) {
-        const double r = std::hypot(x, z, depth + beyond);
-        sum += (1.0 + beyond / depth) *
-               with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+  std::vector<double> sums;
+  for (double depth = SurfaceClosure<Dim>::least_depth; depth < effective_radius + table_step; depth += table_step) {
+    double sum = 0.0;
+    for (int x = -reach; x <= reach; ++x) {
+      for (int z = Dim == 2 ? 0 : -reach; z <= (Dim == 2 ? 0 : reach); ++z) {
+        for (double beyond = 0.5; depth + beyond < effective_radius; beyond += 1.0) {
+          const double r = std::hypot(x, z, depth + beyond);
+          const double weight =
+              with_kernel(type, [&](auto kernel) { return decltype(kernel)::weight(r, effective_radius); });
+          if (weight > 0.0) sum += term(weight, beyond, depth);
+        }
       }
     }
+    sums.push_back(sum);
   }
-  return sum;
+  return sums;
 }
 
 }  // namespace
 
 template <int Dim>
-SurfaceClosure<Dim>::SurfaceClosure(KernelType type, double effective_radius) {
-  for (double depth = least_depth; depth < effective_radius + table_step; depth += table_step)
-    weight_.push_back(missing_weight<Dim>(type, effective_radius, depth));
-}
+SurfaceClosure<Dim>::SurfaceClosure(KernelType type, double laplacian_radius, double packing_radius)
+    : weight_(missing<Dim>(type, laplacian_radius,
+                           [](double weight, double beyond, double depth) { return (1.0 + beyond / depth) * weight; })),
+      packing_(missing<Dim>(type, packing_radius, [&](double weight, double, double) {
+        return with_kernel(type, [&](auto kernel) { return packing_weight<Dim, decltype(kernel)>(weight); });
+      })) {}
 
 template <int Dim>
-double SurfaceClosure<Dim>::weight(double depth) const {
+double SurfaceClosure<Dim>::at_depth(const std::vector<double>& table, double depth) {
   const double place = (std::max(depth, least_depth) - least_depth) / table_step;
-  if (!(place < static_cast<double>(weight_.size() - 1))) return 0.0;
+  if (!(place < static_cast<double>(table.size() - 1))) return 0.0;
   const auto below = static_cast<std::size_t>(place);
   const double upper = place - static_cast<double>(below);
-  return (1.0 - upper) * weight_[below] + upper * weight_[below + 1];
+  return (1.0 - upper) * table[below] + upper * table[below + 1];
 }
 
 template <int Dim>
-double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> asymmetry,
-                     std::span<const std::uint8_t> free_surface, double spacing, int i) {
+double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> position,
+                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface, double spacing,
+                     int i) {
   const auto self = static_cast<std::size_t>(i);
   if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
   double weights = 0.0;
   double depths = 0.0;
-  for (const int neighbour : far.index) {
+  for (const int neighbour : around) {
     const auto j = static_cast<std::size_t>(neighbour);
     if (!free_surface[j]) continue;
     const double size = norm(asymmetry[j]);
@@ -128,7 +136,7 @@ Vector<Dim> surface_normal(const PairList& near, std::span<const Vector<Dim>> as
 
 template class SurfaceClosure<2>;
 template class SurfaceClosure<3>;
-template double surface_depth<2>(const PairRow&, std::span<const Vector<2>>, std::span<const Vector<2>>,
+template double surface_depth<2>(std::span<const int>, std::span<const Vector<2>>, std::span<const Vector<2>>,
                                  std::span<const std::uint8_t>, double, int);
 template double surface_flatness<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template double surface_flatness<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
@@ -138,7 +146,7 @@ template double surface_calm<3>(const PairList&, std::span<const Vector<3>>, std
                                 const Matrix<3>&, double, int);
 template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
-template double surface_depth<3>(const PairRow&, std::span<const Vector<3>>, std::span<const Vector<3>>,
+template double surface_depth<3>(std::span<const int>, std::span<const Vector<3>>, std::span<const Vector<3>>,
                                  std::span<const std::uint8_t>, double, int);
 
 }  // namespace impinge

@@ -4,6 +4,7 @@
 
 #include "cloud_with_pairs.hpp"
 #include "dimensions.hpp"
+#include "impinge/method/operators.hpp"
 #include "impinge/method/surface.hpp"
 
 namespace impinge {
@@ -31,7 +32,7 @@ class FreeSurface : public testing::Test {
     return lattice_.at(point);
   }
   double depth_of(int i, double spacing = 1.0) const {
-    return surface_depth<Dim>(lattice_.far_row(i), lattice_.particles.position, asymmetry_, marked_, spacing, i);
+    return surface_depth<Dim>(lattice_.far_row(i).index, lattice_.particles.position, asymmetry_, marked_, spacing, i);
   }
   Vector<Dim> normal_at(double depth) const {
     return surface_normal<Dim>(lattice_.near, asymmetry_, marked_, at_depth(depth));
@@ -62,7 +63,7 @@ TYPED_TEST_SUITE(FreeSurface, Dimensions);
 TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
   for (const KernelType kernel : all_kernels) {
     const Cloud<TestFixture::Dim> lattice(0.0, kernel);
-    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius);
+    const SurfaceClosure<TestFixture::Dim> closure(kernel, far_radius, near_radius);
     const auto pressure = [&](int i) {
       return 11.0 - lattice.particles.position[static_cast<std::size_t>(i)][TestFixture::Dim - 1];
     };
@@ -82,8 +83,23 @@ TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
   }
 }
 
+TYPED_TEST(FreeSurface, CompletesThePackingOfTheRowsBelow) {
+  constexpr int dim = TestFixture::Dim;
+  for (const KernelType kernel : all_kernels) {
+    const Cloud<dim> lattice(0.0, kernel);
+    const SurfaceClosure<dim> closure(kernel, far_radius, near_radius);
+    const double whole = lattice_sums<dim>(kernel, near_radius).packing;
+    for (const double depth : {0.5, 1.5, 2.5}) {
+      const double here =
+          packing<dim>(lattice.near, lattice.particles.position, kernel, near_radius, 1 << 30, this->at_depth(depth));
+      EXPECT_NEAR(here + closure.packing(depth), whole, 1e-10) << "depth " << depth;
+      EXPECT_EQ(closure.packing(depth) > 0.0, depth + 0.5 < near_radius) << "depth " << depth;
+    }
+  }
+}
+
 TYPED_TEST(FreeSurface, ClosureIsInterpolatedBetweenTheRows) {
-  const SurfaceClosure<TestFixture::Dim> closure(KernelType::non_singular, far_radius);
+  const SurfaceClosure<TestFixture::Dim> closure(KernelType::non_singular, far_radius, near_radius);
   for (double depth = 0.5; depth < 4.0; depth += 0.037) {
     const auto [weight, height] = this->missing(KernelType::non_singular, depth);
     const double expected = weight + height / depth;

@@ -12,32 +12,38 @@
 
 namespace impinge {
 
-/// What the Laplacian of a particle misses beyond a flat free surface. With a pressure that is linear through zero at
-/// the surface, a lattice point at the height d_g above it has the pressure -p_i d_g/d_i, so that the missing pairs are
-/// the flux -p_i sum W (1 + d_g/d_i): a weight on the diagonal, and nothing else.
+/// What a particle misses beyond a flat free surface, of the lattice that would go on there. Of the Laplacian: with a
+/// pressure that is linear through zero at the surface, a lattice point at the height d_g above it has the pressure
+/// -p_i d_g/d_i, so that the missing pairs are the flux -p_i sum W (1 + d_g/d_i), a weight on the diagonal, and nothing
+/// else. Of the packing: the sum over the points.
 template <int Dim>
 class SurfaceClosure {
  public:
   /// Depth of a surface particle below the surface [dp].
   static constexpr double least_depth = 0.5;
 
-  /// Radius in dp.
-  SurfaceClosure(KernelType type, double effective_radius);
+  /// Radii of Laplacian and packing [dp].
+  SurfaceClosure(KernelType type, double laplacian_radius, double packing_radius);
 
   /// The weight [-] at a depth [dp], interpolated in a table; 0 where nothing is missing.
-  double weight(double depth) const;
+  double weight(double depth) const { return at_depth(weight_, depth); }
+  /// Likewise the packing [-].
+  double packing(double depth) const { return at_depth(packing_, depth); }
 
  private:
-  std::vector<double> weight_;  // at least_depth, one step deeper, ...
+  static double at_depth(const std::vector<double>& table, double depth);
+
+  std::vector<double> weight_, packing_;  // at least_depth, one step deeper, ...
 };
 
 /// Depth of particle i below the free surface [dp], at least least_depth: its distance to the planes half a spacing [m]
-/// outside the surface particles of its row, their normals along the asymmetries; the mean with weights 1/r_ij^6, so
+/// outside the surface particles around, their normals along the asymmetries; the mean with weights 1/r_ij^6, so
 /// that around a bend the nearest count; infinite without any.
 /// Reads positions, asymmetries and surface marks of owned particles and halo.
 template <int Dim>
-double surface_depth(const PairRow& far, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> asymmetry,
-                     std::span<const std::uint8_t> free_surface, double spacing, int i);
+double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> position,
+                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface, double spacing,
+                     int i);
 
 /// Flatness of the free surface at particle i [0, 1], from the unit normals n_j (along the asymmetries) of the surface
 /// particles among it and its neighbours: 0 up to |sum n_j| = 0.8 of their number, 1 from 0.95 on, linear between; 1

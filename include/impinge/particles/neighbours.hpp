@@ -28,6 +28,10 @@ struct PairList {
 
   int begin(int i) const { return start[static_cast<std::size_t>(i)]; }
   int end(int i) const { return start[static_cast<std::size_t>(i) + 1]; }
+  std::span<const int> row(int i) const {
+    return std::span<const int>(index.data(), index.size())
+        .subspan(static_cast<std::size_t>(begin(i)), static_cast<std::size_t>(end(i) - begin(i)));
+  }
   int rows() const { return static_cast<int>(start.size()) - 1; }
   std::int64_t pairs() const { return start.back(); }
   std::size_t bytes() const {

@@ -18,7 +18,7 @@ Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const
       far_sums_(lattice_sums<Dim>(settings.kernel.type, settings.kernel.laplacian_radius)),
       laplacian_factor_(2.0 * Dim /
                         (far_sums_.number_density * far_sums_.lambda * std::pow(settings.particles.spacing, 2))),
-      closure_(settings.kernel.type, settings.kernel.laplacian_radius),
+      closure_(settings.kernel.type, settings.kernel.laplacian_radius, settings.kernel.radius),
       solver_(comm, settings.pressure.tolerance) {
   if (solver_.is_two_level()) two_level_.emplace(comm, cells);
 }
@@ -100,6 +100,22 @@ double Projection<Dim>::divergence_after(double time, const State<Dim>& state, i
   return trace(slope) - time * trace_of_square(slope);
 }
 
+template <int Dim>
+double Projection<Dim>::depth(const State<Dim>& state, std::span<const int> around, int i) const {
+  return surface_depth<Dim>(around, state.particles.position, state.asymmetry, state.particles.free_surface,
+                            settings_.particles.spacing, i);
+}
+
+// Packing, with what is missing beyond the free surface, over that of the lattice.
+template <int Dim>
+double Projection<Dim>::relative_packing(const State<Dim>& state, int i) const {
+  const PairList& near = state.near();
+  double sum = packing<Dim>(near, state.particles.position, settings_.kernel.type,
+                            settings_.kernel.radius * settings_.particles.spacing, state.walls.first_own_image(), i);
+  if (is_beside_surface(near, state.particles.free_surface, i)) sum += closure_.packing(depth(state, near.row(i), i));
+  return sum / near_sums_.packing;
+}
+
 // (n* - n0)/n0, or the packing's; owned particles first, then room for the others. The free surface misses neighbours,
 // which says nothing of crowding.
 template <int Dim>
@@ -109,12 +125,9 @@ std::vector<double> Projection<Dim>::crowding(const State<Dim>& state) const {
   for (int i = 0; i < particles.owned; ++i) {
     const auto self = static_cast<std::size_t>(i);
     if (state.role[self] != PressureRole::unknown || particles.free_surface[self]) continue;
-    crowded[self] = settings_.pressure.packing ? packing<Dim>(state.near(), particles.position, settings_.kernel.type,
-                                                              settings_.kernel.radius * settings_.particles.spacing,
-                                                              state.walls.first_own_image(), i) /
-                                                         near_sums_.packing -
-                                                     1.0
-                                               : particles.number_density[self] / near_sums_.number_density - 1.0;
+    crowded[self] = (settings_.pressure.packing ? relative_packing(state, i)
+                                                : particles.number_density[self] / near_sums_.number_density) -
+                    1.0;
   }
   if (settings_.pressure.packing)
     for (int pass = 0; pass < crowding_passes; ++pass) smooth(state, crowded);
@@ -140,8 +153,7 @@ template <int Dim>
 double Projection<Dim>::surface_weight(const State<Dim>& state, int i, const PairRow& far) const {
   if (!settings_.free_surface.zero_outside) return 0.0;
   if (state.role[static_cast<std::size_t>(i)] != PressureRole::unknown) return 0.0;
-  return closure_.weight(surface_depth<Dim>(far, state.particles.position, state.asymmetry,
-                                            state.particles.free_surface, settings_.particles.spacing, i));
+  return closure_.weight(depth(state, far.index, i));
 }
 
 template <int Dim>

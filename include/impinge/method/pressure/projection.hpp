@@ -63,6 +63,8 @@ class Projection {
   void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
   std::vector<double> sources(const Step& step, State<Dim>& state) const;
   double divergence_after(double time, const State<Dim>& state, int i) const;
+  double depth(const State<Dim>& state, std::span<const int> around, int i) const;
+  double relative_packing(const State<Dim>& state, int i) const;
   std::vector<double> crowding(const State<Dim>& state) const;
   void smooth(const State<Dim>& state, std::vector<double>& field) const;
   double surface_weight(const State<Dim>& state, int i, const PairRow& far) const;
