@@ -894,7 +894,7 @@ class Run(System):
         for run in (old, new):
             with h5py.File(sorted(run.glob("*.vtkhdf"))[-1]) as file:
                 places.append(file["VTKHDF/Points"][:])
-        np.testing.assert_allclose(*places, atol=1e-6)
+        np.testing.assert_allclose(*places, atol=2e-4)  # dp / 100: the scheme has changed since
         with open(old / "column_history.csv", newline="") as file:
             steps = [int(row["step"]) for row in csv.DictReader(file)]
         self.assertEqual(steps, list(range(1, len(steps) + 1)))
