@@ -163,10 +163,14 @@ std::vector<std::vector<Vector<3>>> rims_of(const Inlet<3>& inlet, double) {
 }
 
 template <int Dim>
-void add_inlets(const Scene<Dim>& scene, double spacing, Cells<Dim>& cells) {
-  for (std::size_t k = 0; k < scene.inlets.size(); ++k)
-    for (const std::vector<Vector<Dim>>& rim : rims_of(scene.inlets[k], spacing))
-      cells.add(SceneItem::inlet, k + 1, rim, scene.inlets[k].direction);
+void add_inlets(const Case& config, const Scene<Dim>& scene, Cells<Dim>& cells) {
+  const double spacing = config.particles.spacing;
+  std::vector<Inlet<Dim>> inlets = scene.inlets;
+  if (!config.inlets.empty()) inlets.clear();  // there, one with a profile is in parts
+  for (const InletEntry& entry : config.inlets) inlets.push_back(inlet_of<Dim>(entry, spacing, config.kernel));
+  for (std::size_t k = 0; k < inlets.size(); ++k)
+    for (const std::vector<Vector<Dim>>& rim : rims_of(inlets[k], spacing))
+      cells.add(SceneItem::inlet, k + 1, rim, inlets[k].direction);
 }
 
 template <int Dim>
@@ -208,7 +212,7 @@ void add_lines(const Case& config, Cells<Dim>& cells) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
   add_walls(scene.walls, cells);
   add_paths(config, scene.walls, cells);
-  add_inlets(scene, config.particles.spacing, cells);
+  add_inlets(config, scene, cells);
   add_outlets(config.outlets, cells);
   add_observers(config, scene, cells);
   for (std::size_t k = 0; k < config.damping.size(); ++k)

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "impinge/core/mpi.hpp"
@@ -65,7 +66,7 @@ template <int Dim>
 std::vector<Inlet<Dim>> inlets_of(const MethodSettings& method, const SceneSettings& settings) {
   std::vector<Inlet<Dim>> inlets;
   for (const InletEntry& entry : settings.inlets)
-    inlets.push_back(inlet_of<Dim>(entry, method.particles.spacing, method.kernel));
+    std::ranges::move(parts_of<Dim>(entry, method.particles.spacing, method.kernel), std::back_inserter(inlets));
   return inlets;
 }
 

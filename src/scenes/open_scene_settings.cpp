@@ -242,7 +242,7 @@ template <int Dim>
 void check_inlets_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   for (const SoundInlet<Dim>& inlet : sound_inlets<Dim>(keys, s, in)) {
     const double speed = largest_speed(*inlet.entry);
-    if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds) && speed > in.time.max_speed)
+    if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds, inlet.entry->profile) && speed > in.time.max_speed)
       keys.mistake(inlet.entry->center, fmt::format("blows at {:.4g} m/s; allowed: up to time.max_speed, {} (m/s)",
                                                     speed, number_text(in.time.max_speed)));
     if (!keys.usable(s.domain.low, s.domain.high)) continue;
@@ -402,7 +402,7 @@ double open_scene_speed(const Keys& keys, const SceneSettings& s, const SceneInp
   add_fastest(sound_walls<2>(keys, s, in));
   add_fastest(sound_walls<3>(keys, s, in));
   for (const InletEntry& inlet : s.inlets)
-    if (keys.usable(inlet.speed, inlet.speeds)) fastest = std::max(fastest, largest_speed(inlet));
+    if (keys.usable(inlet.speed, inlet.speeds, inlet.profile)) fastest = std::max(fastest, largest_speed(inlet));
   Bounds all = fluid;
   add_walls(keys, s, in, all);
   add_inlets(keys, s, in, all);

@@ -25,6 +25,10 @@ double area_of(const InletEntry& inlet) {
   return std::numbers::pi * (inlet.radius * inlet.radius - hole * hole);
 }
 
+bool is_round(const InletEntry& inlet) {
+  return inlet.section == InletSection::circle || inlet.section == InletSection::annulus;
+}
+
 /// What is wrong with the section's size; nothing if all is well.
 std::string size_problem(const InletEntry& inlet, int dimension, double spacing) {
   if (dimension == 2) {
@@ -123,6 +127,41 @@ std::array<Vector<3>, 2> across(const Vector<3>& direction, const Vector<3>& wis
   return {first, cross(direction, first)};
 }
 
+/// Where a profile begins and ends: distances from the axis, or along the width from the middle [m].
+std::pair<double, double> reach_of_profile(const InletEntry& inlet) {
+  if (is_round(inlet)) return {inlet.section == InletSection::annulus ? inlet.inner_radius : 0.0, inlet.radius};
+  return {-0.5 * inlet.width, 0.5 * inlet.width};
+}
+
+double profile_at(const InletEntry& inlet, double place) {
+  const auto after = std::ranges::upper_bound(inlet.profile_at, place);
+  const auto k = static_cast<std::size_t>(after - inlet.profile_at.begin());
+  if (k == 0) return inlet.profile.front();
+  if (after == inlet.profile_at.end()) return inlet.profile.back();
+  const double share = (place - inlet.profile_at[k - 1]) / (*after - inlet.profile_at[k - 1]);
+  return (1.0 - share) * inlet.profile[k - 1] + share * inlet.profile[k];
+}
+
+/// The area between two places, of a round section over 2 pi, of another one per length of the other side.
+double area_between(const InletEntry& inlet, double low, double high) {
+  return is_round(inlet) ? 0.5 * (high * high - low * low) : high - low;
+}
+
+/// The mean of the profile between two places, exact: piece by piece by Simpson's rule.
+double mean_of_profile(const InletEntry& inlet, double low, double high) {
+  std::vector<double> ends{low};
+  for (const double place : inlet.profile_at)
+    if (place > low && place < high) ends.push_back(place);
+  ends.push_back(high);
+  const auto flow = [&](double place) { return profile_at(inlet, place) * (is_round(inlet) ? place : 1.0); };
+  double sum = 0.0;
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    const double begin = ends[k - 1], end = ends[k];
+    sum += (end - begin) / 6.0 * (flow(begin) + 4.0 * flow(0.5 * (begin + end)) + flow(end));
+  }
+  return sum / area_between(inlet, low, high);
+}
+
 /// Direction, section and distance of the rows.
 void lay_section(const InletEntry& entry, double spacing, Inlet<2>& inlet) {
   const Vector<2> direction = vector_of<2>(entry.direction);
@@ -156,6 +195,21 @@ void lay_section(const InletEntry& entry, double spacing, Inlet<3>& inlet) {
   inlet.spacing = spacing * spacing * spacing * static_cast<double>(inlet.section.size()) / area_of(entry);
 }
 
+/// Notes numbers of a table that do not rise.
+void check_rise(Keys& keys, const std::vector<double>& numbers, const char* what, const char* unit) {
+  const auto fall = std::ranges::adjacent_find(numbers, std::greater_equal{});
+  if (fall != numbers.end())
+    keys.mistake(numbers, fmt::format("the {} do not rise: {} after {}; allowed: > {} ({})", what,
+                                      number_text(*(fall + 1)), number_text(*fall), number_text(*fall), unit));
+}
+
+/// As many rows as a kernel reaches, in their places if the inlet blows.
+template <int Dim>
+void set_rows(double spacing, const KernelSettings& kernel, Inlet<Dim>& inlet) {
+  inlet.rows = static_cast<int>(std::ceil(kernel.largest() * spacing / inlet.spacing)) + 1;
+  inlet.last_row = inlet.blows ? -(inlet.rows - 0.5) * inlet.spacing : inlet.no_row();
+}
+
 void check_speeds(Keys& keys, const InletEntry& inlet) {
   if (!keys.usable(inlet.speed, inlet.times, inlet.speeds)) return;
   if (inlet.times.empty() && inlet.speeds.empty()) {
@@ -167,14 +221,7 @@ void check_speeds(Keys& keys, const InletEntry& inlet) {
   if (inlet.times.size() != inlet.speeds.size())
     keys.mistake(inlet.speeds, fmt::format("{} speeds, but {} times; allowed: one for each time", inlet.speeds.size(),
                                            inlet.times.size()));
-  const auto fall = std::ranges::adjacent_find(inlet.times, std::greater_equal{});
-  if (fall != inlet.times.end())
-    keys.mistake(inlet.times, fmt::format("the times do not rise: {} after {}; allowed: > {} (s)",
-                                          number_text(*(fall + 1)), number_text(*fall), number_text(*fall)));
-}
-
-bool has_length(const Numbers& direction, int dimension) {
-  return dimension == 2 ? norm(vector_of<2>(direction)) > 0.0 : norm(vector_of<3>(direction)) > 0.0;
+  check_rise(keys, inlet.times, "times", "s");
 }
 
 /// True where the numbers that a section needs have allowed values.
@@ -190,6 +237,20 @@ bool has_size(const Keys& keys, const InletEntry& inlet) {
       return keys.usable(inlet.radius, inlet.inner_radius);
   }
   return false;
+}
+
+void check_profile(Keys& keys, const InletEntry& inlet) {
+  if (!keys.usable(inlet.profile_at, inlet.profile)) return;
+  check_rise(keys, inlet.profile_at, "places", "m");
+  if (inlet.profile_at.size() != inlet.profile.size())
+    keys.mistake(inlet.profile, fmt::format("{} factors, but {} places; allowed: one for each place",
+                                            inlet.profile.size(), inlet.profile_at.size()));
+  else if (!inlet.profile.empty() && has_size(keys, inlet) && mean_of_profile(inlet) == 0.0)
+    keys.mistake(inlet.profile, "nothing enters; allowed: factors > 0 within the section");
+}
+
+bool has_length(const Numbers& direction, int dimension) {
+  return dimension == 2 ? norm(vector_of<2>(direction)) > 0.0 : norm(vector_of<3>(direction)) > 0.0;
 }
 
 /// True where particles of an inlet's rows stand in the block of another.
@@ -240,6 +301,13 @@ void declare_openings(Keys& keys, std::vector<InletEntry>& inlets, std::vector<O
     inner.add("times", inlet.times, "times of the speeds", {.unit = "s"});
     inner.add("speeds", inlet.speeds, "in the place of speed: linear between the times, constant before and after",
               {.unit = "m/s", .range = not_negative});
+    inner.add(
+        "profile_at", inlet.profile_at,
+        "places of the profile: distances from the axis of a circle or an annulus; along the width, from the middle",
+        {.unit = "m"});
+    inner.add("profile", inlet.profile,
+              "the speed is multiplied by this: linear between the places, constant before and after",
+              {.range = not_negative, .fallback = "uniform"});
     inner.add("start", inlet.start, "time from which it blows", {.unit = "s"});
     inner.add("stop", inlet.stop, "time until which it blows", {.unit = "s", .fallback = "never"});
   });
@@ -264,6 +332,7 @@ void check_inlets(Keys& keys, int dimension, double spacing, const KernelSetting
   check_names(keys, inlets);
   for (const InletEntry& inlet : inlets) {
     check_speeds(keys, inlet);
+    check_profile(keys, inlet);
     if (keys.usable(inlet.direction) && !has_length(inlet.direction, dimension))
       keys.mistake(inlet.direction, "no direction; allowed: any vector but 0");
     if (keys.usable(inlet.section) && (inlet.section == InletSection::line) != (dimension == 2)) {
@@ -271,10 +340,9 @@ void check_inlets(Keys& keys, int dimension, double spacing, const KernelSetting
                                       ? "has three dimensions; allowed: \"line\""
                                       : "a line has two dimensions; allowed: \"circle\", \"annulus\", \"rectangle\"");
     } else if (has_size(keys, inlet)) {
-      const bool is_round = inlet.section == InletSection::circle || inlet.section == InletSection::annulus;
       const bool is_low = inlet.section == InletSection::rectangle && inlet.height < inlet.width;
       if (const std::string problem = size_problem(inlet, dimension, spacing); !problem.empty())
-        keys.mistake(is_round ? inlet.radius : is_low ? inlet.height : inlet.width, problem);
+        keys.mistake(is_round(inlet) ? inlet.radius : is_low ? inlet.height : inlet.width, problem);
     }
     if (inlet.section == InletSection::rectangle && keys.usable(inlet.across, inlet.direction)) {
       const Vector<3> direction = vector_of<3>(inlet.direction), wish = vector_of<3>(inlet.across);
@@ -322,7 +390,14 @@ bool is_usable(const Keys& keys, int dimension, double spacing, const InletEntry
 }
 
 double largest_speed(const InletEntry& inlet) {
-  return inlet.speeds.empty() ? inlet.speed : std::ranges::max(inlet.speeds);
+  const double speed = inlet.speeds.empty() ? inlet.speed : std::ranges::max(inlet.speeds);
+  return inlet.profile.empty() ? speed : speed * std::ranges::max(inlet.profile);
+}
+
+double mean_of_profile(const InletEntry& inlet) {
+  if (inlet.profile.empty()) return 1.0;
+  const auto [low, high] = reach_of_profile(inlet);
+  return mean_of_profile(inlet, low, high);
 }
 
 template <int Dim>
@@ -330,7 +405,6 @@ Inlet<Dim> inlet_of(const InletEntry& entry, double spacing, const KernelSetting
   Inlet<Dim> inlet;
   inlet.name = entry.name;
   lay_section(entry, spacing, inlet);
-  inlet.rows = static_cast<int>(std::ceil(kernel.largest() * spacing / inlet.spacing)) + 1;
   for (std::size_t k = 0; k < std::min(entry.times.size(), entry.speeds.size()); ++k)
     inlet.speeds.push_back({entry.times[k], entry.speeds[k]});
   inlet.speed = entry.speed;
@@ -338,12 +412,45 @@ Inlet<Dim> inlet_of(const InletEntry& entry, double spacing, const KernelSetting
   if (entry.stop < InletEntry::never) inlet.stop = entry.stop;
   inlet.blows = inlet.blows_at(0.0);
   inlet.speed = inlet.speed_at(0.0);
-  inlet.last_row = inlet.blows ? -(inlet.rows - 0.5) * inlet.spacing : inlet.no_row();
+  set_rows(spacing, kernel, inlet);
   return inlet;
 }
 
 template Inlet<2> inlet_of(const InletEntry&, double, const KernelSettings&);
 template Inlet<3> inlet_of(const InletEntry&, double, const KernelSettings&);
+
+template <int Dim>
+std::vector<Inlet<Dim>> parts_of(const InletEntry& entry, double spacing, const KernelSettings& kernel) {
+  const Inlet<Dim> whole = inlet_of<Dim>(entry, spacing, kernel);
+  if (entry.profile.empty()) return {whole};
+  const auto [begin, end] = reach_of_profile(entry);
+  const auto count = static_cast<int>(std::clamp(std::round((end - begin) / spacing), 1.0, most_of_row));
+  std::vector<Inlet<Dim>> parts;
+  for (int k = 0; k < count; ++k) {
+    const double low = begin + (end - begin) * k / count, high = begin + (end - begin) * (k + 1) / count;
+    Inlet<Dim> part = whole;
+    std::erase_if(part.section, [&](const auto& place) {
+      const double at = is_round(entry) ? std::hypot(place[0], place.back()) : place[0] + begin;
+      return at < low || at >= high;
+    });
+    const double factor = mean_of_profile(entry, low, high);
+    if (part.section.empty() || factor == 0.0) continue;
+    part.speed *= factor;
+    for (SpeedEntry& at_time : part.speeds) at_time.speed *= factor;
+    if (is_round(entry)) {
+      part.radius = high;
+      part.inner_radius = low;
+    }
+    part.spacing *= static_cast<double>(part.section.size()) / static_cast<double>(whole.section.size()) *
+                    area_between(entry, begin, end) / area_between(entry, low, high);
+    set_rows(spacing, kernel, part);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+template std::vector<Inlet<2>> parts_of(const InletEntry&, double, const KernelSettings&);
+template std::vector<Inlet<3>> parts_of(const InletEntry&, double, const KernelSettings&);
 
 Outline way_of(const Inlet<2>& inlet, double width, double from, double to, double margin) {
   std::vector<std::string> mistakes;

@@ -160,8 +160,11 @@ std::string inlet_line(const InletEntry& entry, const MethodSettings& method) {
   if (entry.speeds.empty()) {
     text += fmt::format("{:.6g} m/s", entry.speed);
   } else {
-    text += fmt::format("{} speeds up to {:.6g} m/s", entry.speeds.size(), largest_speed(entry));
+    text += fmt::format("{} speeds up to {:.6g} m/s", entry.speeds.size(), std::ranges::max(entry.speeds));
   }
+  if (!entry.profile.empty())
+    text += fmt::format(" times a profile up to {:.6g}, mean {:.6g}", std::ranges::max(entry.profile),
+                        mean_of_profile(entry));
   if (entry.start > 0.0) text += fmt::format(", from t = {:.6g} s", entry.start);
   if (entry.stop < InletEntry::never) text += fmt::format(", until t = {:.6g} s", entry.stop);
   return text;

@@ -367,9 +367,12 @@ void refuse_target(const Case& config, const std::string& reason) {
 void check_inlets_of_target(const Case& config, std::size_t most) {
   const auto& inlets = config.inlets;
   if (inlets.empty() || inlets.size() > most) refuse_target(config, fmt::format("it has {} inlets", inlets.size()));
-  for (const InletEntry& inlet : inlets)
+  for (const InletEntry& inlet : inlets) {
     if (!inlet.speeds.empty())
       refuse_target(config, fmt::format("the speed of the inlet {} changes in time", inlet.name));
+    if (!inlet.profile.empty())
+      refuse_target(config, fmt::format("the speed of the inlet {} changes over its section", inlet.name));
+  }
 }
 
 bool is_long_enough(const AnalyticJet& jet, double begin, double end) {

@@ -715,7 +715,7 @@ TEST(Case, FindsMistakesInSettings) {
 
 /// The text holds every key; some members besides, bit by bit.
 void expect_round_trip(const Case& config) {
-  const Case again = parse_case({{"resolved.toml", config.resolved_text}});
+  const Case again = parse_stored({"resolved.toml", config.resolved_text});
   EXPECT_EQ(again.resolved_text, config.resolved_text);
   EXPECT_EQ(again.particles.spacing, config.particles.spacing);
   EXPECT_EQ(again.time.max_speed, config.time.max_speed);

@@ -121,6 +121,67 @@ TEST(SceneInlet, LetsInWhatItsSpeedTellsInTime) {
   }
 }
 
+TEST(SceneInlet, LetsInWhatItsProfileTells) {
+  // In the middle third u = 3, outside of it falling to 0 at the ends: a mean of 2.
+  const std::string profile = "profile_at = [-0.165, -0.055, 0.055, 0.165]\nprofile = [0, 1.5, 1.5, 0]\n";
+  Flow flow(nozzle + profile + "speed = 2\n");
+  ASSERT_EQ(flow.scene.inlets.size(), 7u);
+  double all = 0.0;
+  for (const Inlet<2>& part : flow.scene.inlets) {
+    EXPECT_EQ(part.section.size(), 1u);
+    all += part.speed / 7.0;
+  }
+  EXPECT_NEAR(all, 2.0, 1e-12);
+  EXPECT_NEAR(flow.scene.inlets[3].speed, 3.0, 1e-12);
+  flow.run_until(1.0, 0.004);
+  EXPECT_NEAR(static_cast<double>(flow.entered) * dp * dp, 2.0 * 0.33, 7.1 * dp * dp);
+  for (std::size_t i = 0; i < flow.particles.position.size(); ++i) {
+    if (flow.particles.type[i] != ParticleType::inlet) continue;
+    const auto own = std::ranges::min(flow.scene.inlets, {}, [&](const Inlet<2>& part) {
+      return part.distance_from_block(flow.particles.position[i]);
+    });
+    EXPECT_NEAR(norm(flow.particles.velocity[i]), own.speed, 1e-14);
+  }
+  // Where it stands still, nothing is: the profile is a step here.
+  const Scene<2> half = scene_of(scene_case(nozzle + "speed = 2\nprofile_at = [0, 1e-9]\nprofile = [0, 1]\n"));
+  EXPECT_EQ(half.inlets.size(), 4u);
+}
+
+TEST(SceneInlet, ARoundProfileIsMadeOfRings) {
+  const auto flow_of = [](const std::string& section, double& area) {
+    const Case config =
+        parse_case({{"case.toml",
+                     "dimension = 3\ngeometry = \"scene\"\nparticles.spacing = 0.1\ntime = {end = 1, dt = 1e-3}\n"
+                     "[[inlet]]\ncenter = [0, 0, 0]\ndirection = [0, 1, 1]\nspeed = 1\n" +
+                         section}});
+    double flow = 0.0;
+    area = 0.0;
+    for (const Inlet<3>& part : make_scene<3>(config, config).inlets) {
+      const double own = static_cast<double>(part.section.size()) * 1e-3 / part.spacing;
+      EXPECT_GE(part.rows * part.spacing, 0.26);
+      if (part.radius > 0.0) {
+        EXPECT_NEAR(own, std::numbers::pi * (std::pow(part.radius, 2) - std::pow(part.inner_radius, 2)), 1e-12);
+      }
+      area += own;
+      flow += own * part.speed;
+    }
+    return flow;
+  };
+  double area = 0.0;
+  // u = 1 - r: a cone, a third of the cylinder.
+  EXPECT_NEAR(flow_of("section = \"circle\"\nradius = 1\nprofile_at = [0, 1]\nprofile = [1, 0]\n", area),
+              std::numbers::pi / 3.0, 1e-12);
+  EXPECT_NEAR(area, std::numbers::pi, 1e-12);
+  EXPECT_NEAR(
+      flow_of("section = \"annulus\"\nradius = 1\ninner_radius = 0.5\nprofile_at = [0.5]\nprofile = [2]\n", area),
+      1.5 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(flow_of("section = \"rectangle\"\nwidth = 1\nheight = 0.5\nacross = [1, 0, 0]\n"
+                      "profile_at = [-0.5, 0.5]\nprofile = [0, 3]\n",
+                      area),
+              0.75, 1e-12);
+  EXPECT_NEAR(area, 0.5, 1e-12);
+}
+
 TEST(SceneInlet, HasRowsOnlyWhileItBlows) {
   Flow flow(nozzle + "speed = 1\nstart = 0.3\nstop = 0.8\n");
   EXPECT_EQ(flow.particles.owned, 0);
@@ -239,6 +300,15 @@ TEST(SceneInlet, WhatIsWrongWithItIsTold) {
                  "1 speeds, but 2 times; allowed: one for each time");
   expect_mistake(mistakes(place + "times = [1, 1]\nspeeds = [1, 2]\n"),
                  "the times do not rise: 1.0 after 1.0; allowed: > 1.0");
+  expect_mistake(mistakes(place + "speed = 1\nprofile_at = [0, 0]\nprofile = [1, 1]\n"),
+                 "inlet[1].profile_at = [0.0, 0.0]: the places do not rise: 0.0 after 0.0; allowed: > 0.0 (m)");
+  expect_mistake(mistakes(place + "speed = 1\nprofile_at = [0, 1]\nprofile = [1]\n"),
+                 "inlet[1].profile = [1.0]: 1 factors, but 2 places; allowed: one for each place");
+  expect_mistake(mistakes(place + "speed = 1\nprofile_at = [0, 9]\nprofile = [0, 0]\n"),
+                 "nothing enters; allowed: factors > 0 within the section");
+  expect_mistake(mistakes(place + "speed = 1\nprofile_at = [0]\nprofile = [-1]\n"), "inlet[1].profile");
+  expect_mistake(mistakes(place + "speed = 1\nprofile_at = [0]\nprofile = [3]\n", {"time.max_speed=2"}),
+                 "blows at 3 m/s; allowed: up to time.max_speed");
   expect_mistake(mistakes(place + "speed = 1\nstart = 2\nstop = 1\n"), "stops before it starts; allowed: > 2.0 (s)");
   expect_mistake(mistakes("center = [0, 0]\ndirection = [0, 0]\nwidth = 1\nspeed = 1\n"),
                  "no direction; allowed: any vector but 0");
@@ -271,7 +341,8 @@ TEST(SceneInlet, WhatIsWrongWithItIsTold) {
                  "[[inlet]]\ncenter = [0, 0, 0]\ndirection = [0, 0, 1]\nwidth = 1\nspeed = 1\n"}});
     ADD_FAILURE();
   } catch (const InputError& error) {
-    expect_mistake(error.mistakes(), "inlet[1].section = \"line\": a line has two dimensions; allowed: \"circle\", \"annulus\"");
+    expect_mistake(error.mistakes(),
+                   "inlet[1].section = \"line\": a line has two dimensions; allowed: \"circle\", \"annulus\"");
   }
 }
 

@@ -35,6 +35,9 @@ struct InletEntry {
   double speed = 0.0;          ///< [m/s]
   std::vector<double> times;   ///< of the speeds [s]
   std::vector<double> speeds;  ///< in the place of speed: linear in between [m/s]
+  /// Distances from the axis of a circle or an annulus, or along the width from the middle [m], and what the speed is
+  /// multiplied by there: linear in between, constant before and after; none: uniform.
+  std::vector<double> profile_at, profile;
   double start = 0.0;          ///< [s]
   double stop = never;         ///< [s]
 };
@@ -62,13 +65,21 @@ void check_outlets(Keys& keys, int dimension, const std::vector<OutletEntry>& ou
 /// True where what an inlet's place depends on has allowed values that make one. `spacing`: dp [m].
 bool is_usable(const Keys& keys, int dimension, double spacing, const InletEntry& inlet);
 
-/// The largest speed at any time [m/s].
+/// The largest speed at any time and place [m/s].
 double largest_speed(const InletEntry& inlet);
+
+/// The mean of its profile over the section [-]; 1 without one.
+double mean_of_profile(const InletEntry& inlet);
 
 /// The inlet with its rows in place, if it blows at the start. Rows stand a little closer or farther apart than dp, so
 /// that what enters has the inlet's width or area.
 template <int Dim>
 Inlet<Dim> inlet_of(const InletEntry& entry, double spacing, const KernelSettings& kernel);
+
+/// The inlet, or where it has a profile the rings or strips that it is made of, about a spacing wide. Each of them is a
+/// block by itself with the profile's mean over it, so that what enters is exact. Those that stand still are left out.
+template <int Dim>
+std::vector<Inlet<Dim>> parts_of(const InletEntry& entry, double spacing, const KernelSettings& kernel);
 
 /// The part of an inlet's way between two distances past its plane, narrower by `margin` at both sides [m].
 Outline way_of(const Inlet<2>& inlet, double width, double from, double to, double margin);
