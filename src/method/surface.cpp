@@ -44,6 +44,9 @@ template <int Dim>
 SurfaceClosure<Dim>::SurfaceClosure(KernelType type, double laplacian_radius, double packing_radius)
     : weight_(missing<Dim>(type, laplacian_radius,
                            [](double weight, double beyond, double depth) { return (1.0 + beyond / depth) * weight; })),
+      curvature_(missing<Dim>(
+          type, laplacian_radius,
+          [](double weight, double beyond, double depth) { return 0.5 * beyond * (beyond + depth) * weight; })),
       packing_(missing<Dim>(type, packing_radius, [&](double weight, double, double) {
         return with_kernel(type, [&](auto kernel) { return packing_weight<Dim, decltype(kernel)>(weight); });
       })) {}

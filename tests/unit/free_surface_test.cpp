@@ -83,6 +83,33 @@ TYPED_TEST(FreeSurface, ClosesTheLaplacianOfAHydrostaticPressure) {
   }
 }
 
+// p = 11 y - y^2 below y = 0: lap p = -2, with a slope that the weight on the diagonal takes.
+TYPED_TEST(FreeSurface, ClosesTheLaplacianOfACurvedPressure) {
+  constexpr int dim = TestFixture::Dim;
+  for (const KernelType kernel : all_kernels) {
+    const Cloud<dim> lattice(0.0, kernel);
+    const SurfaceClosure<dim> closure(kernel, far_radius, near_radius);
+    const LatticeSums sums = lattice_sums<dim>(kernel, far_radius);
+    const auto pressure = [&](int i) {
+      const double height = lattice.particles.position[static_cast<std::size_t>(i)][dim - 1] - 11.0;
+      return -11.0 * height - height * height;
+    };
+    for (const double depth : {0.5, 1.5, 2.5, 3.5, 4.5}) {
+      const int i = this->at_depth(depth);
+      double sum = -2.0 * closure.flux_of_curvature(depth) - closure.weight(depth) * pressure(i);
+      for (int k = lattice.far.begin(i); k < lattice.far.end(i); ++k) {
+        const auto pair = static_cast<std::size_t>(k);
+        sum += lattice.far.weight[pair] * (pressure(lattice.far.index[pair]) - pressure(i));
+      }
+      const double laplacian = 2.0 * dim / (sums.number_density * sums.lambda) * sum;
+      EXPECT_NEAR(laplacian, -2.0, 1e-10) << "depth " << depth;
+    }
+    EXPECT_GT(closure.flux_of_curvature(0.5), 1.0);
+    EXPECT_EQ(closure.flux_of_curvature(4.5), 0.0);
+    EXPECT_EQ(closure.flux_of_curvature(std::numeric_limits<double>::infinity()), 0.0);
+  }
+}
+
 TYPED_TEST(FreeSurface, CompletesThePackingOfTheRowsBelow) {
   constexpr int dim = TestFixture::Dim;
   for (const KernelType kernel : all_kernels) {

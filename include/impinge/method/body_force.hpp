@@ -21,6 +21,9 @@ class BodyForce {
     return pull_ == 0.0 ? gravity_ : gravity_ - pull_ * (position - centre_);
   }
 
+  /// Of the acceleration [1/s^2].
+  double divergence() const { return -Dim * pull_; }
+
   bool is_zero() const { return pull_ == 0.0 && gravity_ == Vector<Dim>{}; }
 
   /// Largest acceleration of a fluid particle [m/s^2]. Collective.

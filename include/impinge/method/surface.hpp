@@ -12,10 +12,10 @@
 
 namespace impinge {
 
-/// What a particle misses beyond a flat free surface, of the lattice that would go on there. Of the Laplacian: with a
-/// pressure that is linear through zero at the surface, a lattice point at the height d_g above it has the pressure
-/// -p_i d_g/d_i, so that the missing pairs are the flux -p_i sum W (1 + d_g/d_i), a weight on the diagonal, and nothing
-/// else. Of the packing: the sum over the points.
+/// What a particle misses beyond a flat free surface, of the lattice that would go on there. Of the Laplacian: a
+/// pressure that is zero at the surface and curved by S along its normal is -p_i d_g/d_i + S/2 d_g (d_g + d_i) at a
+/// lattice point at the height d_g above it. The missing pairs are the flux -p_i sum W (1 + d_g/d_i), a weight on the
+/// diagonal, and S sum W d_g (d_g + d_i)/2, which is known. Of the packing: the sum over the points.
 template <int Dim>
 class SurfaceClosure {
  public:
@@ -27,13 +27,15 @@ class SurfaceClosure {
 
   /// The weight [-] at a depth [dp], interpolated in a table; 0 where nothing is missing.
   double weight(double depth) const { return at_depth(weight_, depth); }
+  /// The flux that is known over the curvature S of the pressure [dp^2].
+  double flux_of_curvature(double depth) const { return at_depth(curvature_, depth); }
   /// Likewise the packing [-].
   double packing(double depth) const { return at_depth(packing_, depth); }
 
  private:
   static double at_depth(const std::vector<double>& table, double depth);
 
-  std::vector<double> weight_, packing_;  // at least_depth, one step deeper, ...
+  std::vector<double> weight_, curvature_, packing_;  // at least_depth, one step deeper, ...
 };
 
 /// Depth of particle i below the free surface [dp], at least least_depth: its distance to the planes half a spacing [m]

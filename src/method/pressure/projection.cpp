@@ -42,7 +42,7 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
   {
     const PhaseLog log(Phase::assembly);
     find_image_offsets(step.dt, force, state);
-    source = sources(step, state);
+    source = sources(step, force, state);
   }
   PressureReport report = try_solve(source, state, last_iterations);
   if (!report.failure.empty()) {
@@ -67,7 +67,7 @@ void Projection<Dim>::find_image_offsets(double dt, const BodyForce<Dim>& force,
 }
 
 template <int Dim>
-std::vector<double> Projection<Dim>::sources(const Step& step, State<Dim>& state) const {
+std::vector<double> Projection<Dim>::sources(const Step& step, const BodyForce<Dim>& force, State<Dim>& state) {
   const PressureSettings& pressure = settings_.pressure;
   const double rho = settings_.fluid.density;
   const double dt = step.dt;
@@ -76,28 +76,33 @@ std::vector<double> Projection<Dim>::sources(const Step& step, State<Dim>& state
                            : pressure.gamma;
   const std::vector<double> crowded = crowding(state);
   std::vector<double> source(state.owned(), 0.0);
+  curvature_.assign(source.size(), 0.0);
   for (std::size_t i = 0; i < source.size(); ++i) {
     if (state.role[i] != PressureRole::unknown) {
       state.particles.pressure[i] = 0.0;
       continue;
     }
-    source[i] = (1.0 - gamma) * rho / dt * divergence_after(step.after, state, static_cast<int>(i));
+    double divergence_after = 0.0;  // of the velocity, where the particles will be
+    if (pressure.corrected_divergence) {
+      // Along the way of the particles, d/dt div u = -(grad u):(grad u)^T but for the acceleration.
+      const Matrix<Dim> slope = slope_of_velocity(state, static_cast<int>(i));
+      const double square = trace_of_square(slope);
+      divergence_after = trace(slope) - step.after * square;
+      curvature_[i] = rho * (force.divergence() - square);
+    } else {
+      divergence_after = divergence<Dim>(state.near(), state.particles.position, state.particles.velocity,
+                                         near_sums_.number_density, static_cast<int>(i));
+    }
+    source[i] = (1.0 - gamma) * rho / dt * divergence_after;
     source[i] -= gamma * rho / (dt * dt) * crowded[i];
   }
   return source;
 }
 
-// Along the way of the particles, d/dt div u = -(grad u):(grad u)^T but for the acceleration.
 template <int Dim>
-double Projection<Dim>::divergence_after(double time, const State<Dim>& state, int i) const {
-  const Particles<Dim>& particles = state.particles;
-  const double n0 = near_sums_.number_density;
-  if (!settings_.pressure.corrected_divergence)
-    return divergence<Dim>(state.near(), particles.position, particles.velocity, n0, i);
-  const Matrix<Dim> slope =
-      velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
-                             state.correction[static_cast<std::size_t>(i)], n0, i);
-  return trace(slope) - time * trace_of_square(slope);
+Matrix<Dim> Projection<Dim>::slope_of_velocity(const State<Dim>& state, int i) const {
+  return velocity_gradient<Dim>(state.near(), state.particles.position, state.particles.velocity, state.wall_normal,
+                                state.correction[static_cast<std::size_t>(i)], near_sums_.number_density, i);
 }
 
 template <int Dim>
@@ -148,12 +153,15 @@ void Projection<Dim>::smooth(const State<Dim>& state, std::vector<double>& field
   field = std::move(mean);
 }
 
-// Of p = 0 beyond the surface, on the diagonal of a particle's row.
+// Of the pressure equation, with p = 0 beyond the surface.
 template <int Dim>
-double Projection<Dim>::surface_weight(const State<Dim>& state, int i, const PairRow& far) const {
-  if (!settings_.free_surface.zero_outside) return 0.0;
-  if (state.role[static_cast<std::size_t>(i)] != PressureRole::unknown) return 0.0;
-  return closure_.weight(depth(state, far.index, i));
+PressureEquation::Row Projection<Dim>::row(const State<Dim>& state, int i, const PairRow& far) const {
+  if (!settings_.free_surface.zero_outside || state.role[static_cast<std::size_t>(i)] != PressureRole::unknown)
+    return {far};
+  const double below = depth(state, far.index, i);
+  const double flux = curvature_[static_cast<std::size_t>(i)] * std::pow(settings_.particles.spacing, 2) *
+                      closure_.flux_of_curvature(below);
+  return {far, closure_.weight(below), flux};
 }
 
 template <int Dim>
@@ -161,7 +169,7 @@ PressureReport Projection<Dim>::try_solve(std::span<const double> source, State<
   {
     const PhaseLog log(Phase::assembly);
     const auto for_rows = [&](const auto& use) {
-      state.search.for_far_rows([&](int i, const PairRow& row) { use(i, {row, surface_weight(state, i, row)}); });
+      state.search.for_far_rows([&](int i, const PairRow& far) { use(i, row(state, i, far)); });
     };
     solver_.assemble({.for_rows = for_rows,
                       .role = state.role,
@@ -246,10 +254,8 @@ template <int Dim>
 double Projection<Dim>::calm(const State<Dim>& state, double fall_speed, int i) const {
   if (fall_speed == 0.0) return 1.0;
   const Particles<Dim>& particles = state.particles;
-  const Matrix<Dim> slope =
-      velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
-                             state.correction[static_cast<std::size_t>(i)], near_sums_.number_density, i);
-  return surface_calm<Dim>(state.near(), particles.position, particles.velocity, slope, fall_speed, i);
+  return surface_calm<Dim>(state.near(), particles.position, particles.velocity, slope_of_velocity(state, i),
+                           fall_speed, i);
 }
 
 template <int Dim>

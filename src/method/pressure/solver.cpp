@@ -168,7 +168,7 @@ void PressureSolver::append_row(const PressureEquation& equation, int i, const P
     column[row_begin] = i;
     value[row_begin] = sum;
     rows_.diagonal[self] = sum;
-    right_hand_side_[self] = offset - equation.source[self] / equation.laplacian_factor;
+    right_hand_side_[self] = offset + row.surface_flux - equation.source[self] / equation.laplacian_factor;
     anchored_[self] = zeros > 0.0;
   }
 

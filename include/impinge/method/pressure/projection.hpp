@@ -61,13 +61,13 @@ class Projection {
 
  private:
   void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
-  std::vector<double> sources(const Step& step, State<Dim>& state) const;
-  double divergence_after(double time, const State<Dim>& state, int i) const;
+  std::vector<double> sources(const Step& step, const BodyForce<Dim>& force, State<Dim>& state);
+  Matrix<Dim> slope_of_velocity(const State<Dim>& state, int i) const;
   double depth(const State<Dim>& state, std::span<const int> around, int i) const;
   double relative_packing(const State<Dim>& state, int i) const;
   std::vector<double> crowding(const State<Dim>& state) const;
   void smooth(const State<Dim>& state, std::vector<double>& field) const;
-  double surface_weight(const State<Dim>& state, int i, const PairRow& far) const;
+  PressureEquation::Row row(const State<Dim>& state, int i, const PairRow& far) const;
   PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
   void share_pressure(State<Dim>& state) const;
   Vector<Dim> gradient(const State<Dim>& state, double fall_speed, int i) const;
@@ -81,6 +81,7 @@ class Projection {
   PressureSolver solver_;
   std::optional<TwoLevelPreconditioner<Dim>> two_level_;
   int partitions_seen_ = 0;           // by two_level_
+  std::vector<double> curvature_;     // lap p of a flow that keeps free of divergence [Pa/m^2]; 0 where no part of it
   std::vector<double> image_offset_;  // of an image's pressure over that of its original [Pa]; empty: none
 };
 

@@ -26,10 +26,12 @@ enum class PressureRole : std::uint8_t {
 /// weight; rows without an unknown are n0 p_i = 0. Views are read while assemble runs.
 struct PressureEquation {
   /// A row: the pairs and weights of its Laplacian, columns of owned particles ascending, and where it has an unknown,
-  /// the particle itself among them with weight 0; and the weight of p = 0 beyond the surface [-].
+  /// the particle itself among them with weight 0; the weight of p = 0 beyond the surface [-]; and what flux from
+  /// there is known [Pa].
   struct Row {
     PairRow pairs;
-    double surface_weight;
+    double surface_weight = 0.0;
+    double surface_flux = 0.0;
   };
   /// Calls its argument for every owned particle in their order.
   std::function<void(const std::function<void(int, const Row&)>&)> for_rows;
