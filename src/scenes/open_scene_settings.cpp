@@ -80,16 +80,17 @@ std::vector<double> times_of(const Keys& keys, const WallEntry& wall, const Scen
 constexpr std::size_t many_times = 4000;  // for speeds
 constexpr std::size_t some_times = 400;   // for places
 
-/// The bounds of a wall in its place at a time; in three dimensions those of the corners of its bounds at rest.
+/// The bounds of a wall in its place at a time.
 Box<2> bounds_at(const Wall<2>& wall, double time) { return outline_at(wall, time).bounds(); }
 Box<3> bounds_at(const Wall<3>& wall, double time) {
-  const Box<3> at_rest = wall.surface->bounds();
-  if (!wall.motion) return at_rest;
+  if (!wall.motion) return wall.surface->bounds();
   const Pose<3> pose = (*wall.motion)(time);
   Bounds bounds;
-  for (int k = 0; k < 8; ++k) {
-    const Vector<3> corner = pose.of_position(at_rest.corner(k));
-    bounds.add(Box<3>{corner, corner});
+  for (const auto& patch : wall.surface->patches()) {
+    for (const Vector<3>& point : patch->points()) {
+      const Vector<3> place = pose.of_position(point);
+      bounds.add(Box<3>{place, place});
+    }
   }
   return bounds.box();
 }
@@ -242,7 +243,8 @@ template <int Dim>
 void check_inlets_in_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   for (const SoundInlet<Dim>& inlet : sound_inlets<Dim>(keys, s, in)) {
     const double speed = largest_speed(*inlet.entry);
-    if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds, inlet.entry->profile) && speed > in.time.max_speed)
+    if (keys.usable(in.time.max_speed, inlet.entry->speed, inlet.entry->speeds, inlet.entry->profile) &&
+        speed > in.time.max_speed)
       keys.mistake(inlet.entry->center, fmt::format("blows at {:.4g} m/s; allowed: up to time.max_speed, {} (m/s)",
                                                     speed, number_text(in.time.max_speed)));
     if (!keys.usable(s.domain.low, s.domain.high)) continue;
@@ -264,7 +266,7 @@ struct FastestMoment {
   double speed = 0.0, time = 0.0;
 };
 
-/// Points that tell how fast a wall is: of a rigid body, a corner of a box around it is faster than what is inside.
+/// Points that tell how fast a wall is. Of many, corners of the box around them do: no point inside is faster.
 std::vector<Vector<2>> corners_of(const Outline& outline) {
   std::vector<Vector<2>> points;
   for (const OutlineEdge& edge : outline.edges())
@@ -273,7 +275,11 @@ std::vector<Vector<2>> corners_of(const Outline& outline) {
   return points;
 }
 std::vector<Vector<3>> corners_of(const Mesh& mesh) {
+  constexpr std::size_t many = 1000;
   std::vector<Vector<3>> points;
+  for (const auto& patch : mesh.patches()) points.insert(points.end(), patch->points().begin(), patch->points().end());
+  if (points.size() <= many) return points;
+  points.clear();
   for (int k = 0; k < 8; ++k) points.push_back(mesh.bounds().corner(k));
   return points;
 }

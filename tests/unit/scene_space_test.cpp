@@ -72,6 +72,19 @@ TEST(SceneInSpace, ShapesAreWalls) {
   }
 }
 
+TEST(SceneInSpace, ADrumThatTurnsNeedsNoMoreRoomThanItsOwn) {
+  const auto found = [](double room) {
+    return mistakes(fmt::format(
+        "[[wall]]\nname = \"drum\"\nshape = \"cylinder\"\nbegin = [0.5, 0.5, -0.5]\nend = [0.5, 0.5, 1.5]\n"
+        "radius = 1\nwet = \"inside\"\nmotion = \"turn\"\n[[motion]]\nname = \"turn\"\ntype = \"constant\"\n"
+        "center = [0.5, 0.5, 0]\nspin = 360\n[domain]\nlow = [{0}, {0}, -1]\nhigh = [{1}, {1}, 2]\n",
+        0.5 - room, 0.5 + room));
+  };
+  EXPECT_EQ(found(1.11), std::vector<std::string>{});
+  ASSERT_EQ(found(1.09).size(), 1u);
+  expect_has(found(1.09)[0], "the wall reaches from x = -0.5 to 1.5 m");
+}
+
 TEST(SceneInSpace, WhatIsWrongWithAWallIsTold) {
   expect_has(mistake("[[wall]]\nshape = \"polyline\"\npoints = [[0, 0, 0], [1, 0, 0]]\n"), "have two dimensions");
   expect_has(mistake("[[wall]]\nshape = \"polygon\"\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0.1], [0, 1, 0]]\n"),
