@@ -103,10 +103,16 @@ bool is_table(std::string_view name) { return name.ends_with(".csv"); }
 /// True for the name of a file that a case file names by a key.
 bool is_named(std::string_view name) { return is_table(name) || is_mesh_file(name); }
 
+/// Adds the meshes that the files name.
+void load_meshes(std::vector<NamedText>& files) {
+  for (const char* list : {"wall", "fluid.region", "outlet"})
+    load_named_files(files, list, "file", is_mesh_file, largest_mesh);
+}
+
 /// A stored case with the meshes that it names.
 std::vector<NamedText> with_meshes(const NamedText& stored) {
   std::vector<NamedText> files{stored};
-  load_named_files(files, "wall", "file", is_mesh_file, largest_mesh);
+  load_meshes(files);
   return files;
 }
 
@@ -124,7 +130,12 @@ Case parse(const std::vector<NamedText>& all, const std::vector<std::string>& se
   if (read_files(keys, files, settings)) {
     const SceneInputs inputs{c.dimension, c.particles.spacing, c.kernel, c.fluid, c.time, c.walls};
     if (keys.usable(c.dimension)) take_motion_tables(keys, c.dimension, named, c.motions);
-    for (WallEntry& wall : c.scene_walls) take_mesh(keys, named, wall);
+    const auto take_meshes = [&](auto& shapes) {
+      for (ShapeSettings& shape : shapes) take_mesh(keys, named, shape);
+    };
+    take_meshes(c.scene_walls);
+    take_meshes(c.regions);
+    take_meshes(c.outlets);
     derive(keys, c, inputs, files.front().first);
     check(keys, c, inputs);
   }
@@ -145,7 +156,7 @@ std::vector<NamedText> load_case_files(const std::string& path) {
   declare(keys, c);
   std::vector<NamedText> files = load_files(path, keys);
   load_named_files(files, "motion", "file", is_table, largest_table);
-  load_named_files(files, "wall", "file", is_mesh_file, largest_mesh);
+  load_meshes(files);
   return files;
 }
 

@@ -462,7 +462,7 @@ void load_named_files(std::vector<NamedText>& files, std::string_view list, std:
   for (const auto& [name, text] : files) {
     try {
       const toml::table table = parse_toml(text, name);
-      const toml::array* entries = table.get(list) ? table.get(list)->as_array() : nullptr;
+      const toml::array* entries = table.at_path(list).as_array();
       for (std::size_t k = 0; entries && k < entries->size(); ++k) {
         const toml::table* entry = entries->get(k)->as_table();
         const toml::node* value = entry ? entry->get(key) : nullptr;

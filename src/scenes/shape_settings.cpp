@@ -84,7 +84,7 @@ void declare_shape(Keys& keys, ShapeSettings& shape, ShapeKind kind) {
       open ? "2D: box, circle and polygon have an inside, arc and polyline are lines without thickness; 3D: box, "
              "sphere, "
              "cylinder and cone have an inside, polygon is flat and without thickness, mesh is the surface of a file"
-           : "box, circle and polygon in 2D; box, sphere, cylinder and cone in 3D",
+           : "box, circle and polygon in 2D; box, sphere, cylinder, cone and mesh, the closed surface of a file, in 3D",
       {.required = true});
   keys.only_where(shape.shape, {ShapeType::box}, [&] {
     keys.add("low", shape.low, "corner with the smallest coordinates", {.unit = "m", .required = true});
@@ -142,7 +142,7 @@ void check_shape(Keys& keys, int dimension, ShapeKind kind, const ShapeSettings&
     if (kind == ShapeKind::closed && !shape.has_inside())
       keys.mistake(shape.shape, fmt::format("a line has no inside; allowed: {}",
                                             dimension == 2 ? "\"box\", \"circle\", \"polygon\""
-                                                           : "\"box\", \"sphere\", \"cylinder\", \"cone\""));
+                                                           : "\"box\", \"sphere\", \"cylinder\", \"cone\", \"mesh\""));
   }
   if (dimension == 3 && keys.usable(shape.axis) && !(norm(vector_of<3>(shape.axis)) > 0.0))
     keys.mistake(shape.axis, "no direction; allowed: any vector but 0");
@@ -188,6 +188,14 @@ std::shared_ptr<const Shape<3>> scaled_shape(const ShapeSettings& shape, std::ve
     const double end_radius = shape.shape == ShapeType::cone ? shape.end_radius : shape.radius;
     return std::make_shared<const Frustum>(scaling(vector_of<3>(shape.begin)), scaling(vector_of<3>(shape.end)),
                                            shape.scale * shape.radius, shape.scale * end_radius);
+  }
+  if (shape.shape == ShapeType::mesh) {
+    const std::optional<Facets> facets = scaled_facets(shape, mistakes);
+    std::vector<std::string> left_out;
+    std::optional<Mesh> mesh = facets ? make_mesh(*facets, mistakes, left_out) : std::nullopt;
+    if (mesh && mesh->closed()) return std::make_shared<const Mesh>(std::move(*mesh));
+    if (mesh) mistakes.push_back("the surface has an end, and no inside; allowed: a closed one");
+    return nullptr;
   }
   if (shape.shape != ShapeType::box) {
     mistakes.push_back("circles and polygons have two dimensions");

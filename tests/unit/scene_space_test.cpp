@@ -188,6 +188,34 @@ TEST_F(MeshFile, IsTheSameWallAsAShape) {
   EXPECT_THROW(parse_restart(stored, {}, "out"), FileError);
 }
 
+TEST_F(MeshFile, MayHoldFluidOrSwallowIt) {
+  write("cube.stl", cube(20.0));
+  const std::string shape = "shape = \"mesh\"\nfile = \"cube.stl\"\nscale = 0.05\ntranslate = [3, 0, 0]\n";
+  const auto parsed = [&](const std::string& text) {
+    return parse_case(load_case_files(write("case.toml", head + text)));
+  };
+  const Case config = parsed("[[fluid.region]]\n" + shape + "[[outlet]]\n" + shape);
+  const Scene<3> scene = make_scene<3>(config, config);
+  EXPECT_EQ(count(scene, ParticleType::fluid), 2000);
+  EXPECT_TRUE(scene.outlets.at(0).has_passed({{3.1, 0.9, 0.9}}));
+  EXPECT_FALSE(scene.outlets[0].has_passed({{2.9, 0.9, 0.9}}));
+  const NamedText stored{"x_00000007.checkpoint", config.resolved_text};
+  EXPECT_NO_THROW(parse_restart(stored, {"time.end=2"}, "out"));
+  // Without one of its facets it has no inside.
+  std::string open = cube(20.0);
+  open.erase(open.rfind("facet normal"));
+  write("cube.stl", open + "endsolid cube\n");
+  try {
+    parsed("[[fluid.region]]\n" + shape);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.mistakes().size(), 1u);
+    expect_has(error.mistakes()[0], "fluid.region[2].shape = \"mesh\": the surface has an end, and no inside");
+  }
+  write("cube.stl", cube(21.0));
+  EXPECT_THROW(parse_restart(stored, {}, "out"), FileError);
+}
+
 TEST_F(MeshFile, MayBeObjOrPly) {
   const std::string object = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
   const std::string polygons =

@@ -22,9 +22,7 @@ constexpr auto words(ShapeType) {
 }
 
 /// True for shapes with an inside in two dimensions or three; whether a mesh has one, its file decides.
-constexpr bool has_inside(ShapeType type) {
-  return type != ShapeType::arc && type != ShapeType::polyline && type != ShapeType::mesh;
-}
+constexpr bool has_inside(ShapeType type) { return type != ShapeType::arc && type != ShapeType::polyline; }
 
 /// A shape and its place. Lengths in m, angles in degrees.
 struct ShapeSettings {
