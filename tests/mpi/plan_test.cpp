@@ -146,6 +146,9 @@ TEST(Plan, EstimatesTheMemoryOfARun) {
 
 // By the limit of its process the first rank has room for its particles, but not for the graph of the cells.
 TEST(Plan, TheGraphOfARunCountsWhereItIsPartitioned) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer reserves addresses by the terabyte";
+#endif
   const Case config = shipped_case("hydrostatic.toml", {"particles.spacing=2e-4"});
   const MemoryNeed need = memory_need<2>(config, ranks_of(comm));
   EXPECT_EQ(need.graph > 0.0, ranks_of(comm) > 1);

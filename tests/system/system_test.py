@@ -138,6 +138,7 @@ class CommandLine(System):
         self.assertIn("nonsense", done.stderr)
 
 
+    @unittest.skipIf("sanitize" in BIN.parts, "AddressSanitizer reserves more addresses than any limit leaves")
     def test_a_case_beyond_the_memory_is_refused_with_figures(self):
         limited = lambda *words: subprocess.run(
             ["bash", "-c", 'ulimit -v 3000000; exec "$@"', "bash", BIN / "impinge", *words], cwd=self.directory,
