@@ -10,7 +10,7 @@ namespace impinge {
 
 template <int Dim>
 std::size_t bytes_per_particle() {
-  return 2 * field_bytes<Dim> + sizeof(PressureRole) + 4 * sizeof(double) + 5 * sizeof(Vector<Dim>) +
+  return 2 * field_bytes<Dim> + sizeof(PressureRole) + 6 * sizeof(double) + 5 * sizeof(Vector<Dim>) +
          sizeof(Matrix<Dim>) + sizeof(PetscInt);
 }
 
@@ -21,12 +21,14 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   constexpr double pair = sizeof(int) + sizeof(double);
   constexpr double entry = sizeof(PetscInt) + sizeof(double);
   // A step builds the halo, refreshes role and pressure, and the marks of the search for pockets at least twice; the
-  // consistent scheme also surface marks, asymmetry, velocity, its gradient and its change, and twice the crowding.
+  // consistent scheme also surface marks, asymmetry, velocity, its gradient and its change, twice the crowding, and
+  // four times the depth of the surface.
   double traffic = sizeof(typename Decomposition<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
   if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
   if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
   if (settings.pressure.packing) traffic += 2.0 * sizeof(double);
   if (needs_asymmetry(settings)) traffic += sizeof(Vector<Dim>) + 1.0;
+  if (settings.free_surface.zero_outside) traffic += 4.0 * sizeof(double);
   if (needs_velocity_gradients(settings)) traffic += sizeof(Vector<Dim>) + sizeof(Matrix<Dim>);
   if (settings.shifting.coefficient > 0.0 && settings.shifting.correct_velocity &&
       settings.shifting.least_distance > 0.0)

@@ -217,18 +217,18 @@ Vector<Dim> off_linear(const PairList& near, std::span<const Vector<Dim>> positi
 
 template <int Dim>
 std::optional<Vector<Dim>> surface_gradient(const PairList& near, std::span<const Vector<Dim>> position,
-                                            std::span<const double> pressure, const Vector<Dim>& normal, double spacing,
-                                            double n0, int i) {
+                                            std::span<const double> pressure, const Vector<Dim>& normal, double depth,
+                                            double curvature, double n0, int i) {
   const Vector<Dim> centre = position[static_cast<std::size_t>(i)];
   const double own = pressure[static_cast<std::size_t>(i)];
-  const double distance = SurfaceClosure<Dim>::least_depth * spacing;
-  Vector<Dim> sum = -surface_point_weight * own / distance * normal;
+  Vector<Dim> sum = -surface_point_weight * (own / depth + 0.5 * curvature * depth) * normal;
   Matrix<Dim> moment;
   moment.add_product(surface_point_weight * normal, normal);
   for_pairs(near, i, [&](std::size_t j, double weight) {
     const Vector<Dim> offset = position[j] - centre;
     const Vector<Dim> weighted = Dim / n0 * weight / dot(offset, offset) * offset;
-    sum += (pressure[j] - own) * weighted;
+    const double height = dot(offset, normal);
+    sum += (pressure[j] - own - 0.5 * curvature * height * height) * weighted;
     moment.add_product(weighted, offset);
   });
   const double size = determinant(moment);
@@ -324,7 +324,7 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
                                               const Matrix<Dim>&, double, int);                                        \
   template std::optional<Vector<Dim>> surface_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,             \
                                                             std::span<const double>, const Vector<Dim>&, double,       \
-                                                            double, int);                                              \
+                                                            double, double, int);                                      \
   template Vector<Dim> corrected_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>, \
                                                double, const Matrix<Dim>&, double, int);                               \
   template Vector<Dim> repulsion<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const ParticleType>,    \

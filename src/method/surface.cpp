@@ -62,10 +62,10 @@ double SurfaceClosure<Dim>::at_depth(const std::vector<double>& table, double de
 
 template <int Dim>
 double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> position,
-                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface, double spacing,
-                     int i) {
+                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface,
+                     std::span<const double> layer, double spacing, int i) {
   const auto self = static_cast<std::size_t>(i);
-  if (free_surface[self]) return SurfaceClosure<Dim>::least_depth;
+  if (free_surface[self]) return layer[self];
   double weights = 0.0;
   double depths = 0.0;
   for (const int neighbour : around) {
@@ -77,10 +77,10 @@ double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> p
     if (size == 0.0 || square == 0.0) continue;
     const double weight = 1.0 / (square * square * square);
     weights += weight;
-    depths += weight * (dot(offset, asymmetry[j]) / size + SurfaceClosure<Dim>::least_depth);
+    depths += weight * (dot(offset, asymmetry[j]) / size + layer[j]);
   }
   if (weights == 0.0) return std::numeric_limits<double>::infinity();
-  return std::max(depths / weights, SurfaceClosure<Dim>::least_depth);
+  return std::max(depths / weights, SurfaceClosure<Dim>::usual_depth);
 }
 
 template <int Dim>
@@ -140,7 +140,7 @@ Vector<Dim> surface_normal(const PairList& near, std::span<const Vector<Dim>> as
 template class SurfaceClosure<2>;
 template class SurfaceClosure<3>;
 template double surface_depth<2>(std::span<const int>, std::span<const Vector<2>>, std::span<const Vector<2>>,
-                                 std::span<const std::uint8_t>, double, int);
+                                 std::span<const std::uint8_t>, std::span<const double>, double, int);
 template double surface_flatness<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template double surface_flatness<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template double surface_calm<2>(const PairList&, std::span<const Vector<2>>, std::span<const Vector<2>>,
@@ -150,6 +150,6 @@ template double surface_calm<3>(const PairList&, std::span<const Vector<3>>, std
 template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template double surface_depth<3>(std::span<const int>, std::span<const Vector<3>>, std::span<const Vector<3>>,
-                                 std::span<const std::uint8_t>, double, int);
+                                 std::span<const std::uint8_t>, std::span<const double>, double, int);
 
 }  // namespace impinge

@@ -153,13 +153,23 @@ TYPED_TEST(Operators, TheSurfaceGradientIsExactOnAPressureThatIsZeroThere) {
   Vector<Dim> up;
   up[Dim - 1] = 1.0;
   for (std::size_t j = 0; j < p.pressure.size(); ++j) p.pressure[j] = 4.0 * (11.0 - p.position[j][Dim - 1]);
-  const auto gradient = [&] { return surface_gradient<Dim>(lattice.near, p.position, p.pressure, up, 1.0, n0, i); };
+  double curvature = 0.0;
+  const auto gradient = [&] {
+    return surface_gradient<Dim>(lattice.near, p.position, p.pressure, up, 0.5, curvature, n0, i);
+  };
   ASSERT_TRUE(gradient());
   EXPECT_NEAR(norm(*gradient() + 4.0 * up), 0.0, 1e-12);
   // A pressure along the surface counts, too.
   for (std::size_t j = 0; j < p.pressure.size(); ++j)
     p.pressure[j] += 2.0 * (p.position[j][0] - p.position[static_cast<std::size_t>(i)][0]);
   EXPECT_NEAR((*gradient())[0], 2.0, 1e-12);
+  // One that is curved is 4 y + 3 y^2/2 at the depth y.
+  curvature = 3.0;
+  for (std::size_t j = 0; j < p.pressure.size(); ++j) {
+    const double y = 11.0 - p.position[j][Dim - 1];
+    p.pressure[j] = 4.0 * y + 1.5 * y * y;
+  }
+  EXPECT_NEAR(norm(*gradient() + 5.5 * up), 0.0, 1e-12);
 }
 
 TYPED_TEST(Operators, CorrectedGradientPushesFromACrowdWhereItsBaseIsLow) {
@@ -512,7 +522,7 @@ TYPED_TEST(Operators, ThereIsNoSurfaceGradientWithoutNeighboursAround) {
   Group<Dim> pair;
   pair.add(0.0, 0.0, 0.0, 1.0);
   pair.add(0.8, 0.0, 0.0, 2.0);
-  EXPECT_FALSE(surface_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, Vector<Dim>{}, 1.0, 4.0, 0));
+  EXPECT_FALSE(surface_gradient<Dim>(pair.pairs(), pair.position, pair.pressure, Vector<Dim>{}, 0.5, 0.0, 4.0, 0));
 }
 
 TYPED_TEST(Operators, TheMeanInsideLeavesOutTheSurface) {
@@ -541,7 +551,7 @@ TYPED_TEST(Operators, AreZeroWhereTheRowIsEmpty) {
   EXPECT_EQ(trace(velocity_gradient<Dim>(none, single.position, single.velocity, single.no_wall(),
                                          Matrix<Dim>::identity(), 4.0, 0)),
             0.0);
-  EXPECT_FALSE(surface_gradient<Dim>(none, single.position, single.pressure, Vector<Dim>{}, 1.0, 4.0, 0));
+  EXPECT_FALSE(surface_gradient<Dim>(none, single.position, single.pressure, Vector<Dim>{}, 0.5, 0.0, 4.0, 0));
   EXPECT_EQ(corrected_gradient<Dim>(none, single.position, single.pressure, 1.0, Matrix<Dim>::identity(), 4.0, 0),
             Vector<Dim>{});
   EXPECT_EQ(divergence<Dim>(none, single.position, single.velocity, 4.0, 0), 0.0);

@@ -66,13 +66,13 @@ Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>
                                int i);
 
 /// Pressure gradient [Pa/m] of a surface particle, by least squares over the differences to its neighbours and to p = 0
-/// half a spacing out along the unit normal: exact on a pressure that is linear through zero at the surface. On a flat
-/// lattice the weight of that point, 1/2, makes up for what the neighbours lack in the moment matrix. Nothing where the
-/// neighbours are too few or in line for it. `spacing`: dp [m].
+/// at its `depth` [m] out along the unit normal: exact on a pressure that is zero at the surface and has the second
+/// derivative `curvature` [Pa/m^2] along the normal. On a flat lattice the weight of that point, 1/2, makes up for what
+/// the neighbours lack in the moment matrix. Nothing where the neighbours are too few or in line for it.
 template <int Dim>
 std::optional<Vector<Dim>> surface_gradient(const PairList& near, std::span<const Vector<Dim>> position,
-                                            std::span<const double> pressure, const Vector<Dim>& normal, double spacing,
-                                            double n0, int i);
+                                            std::span<const double> pressure, const Vector<Dim>& normal, double depth,
+                                            double curvature, double n0, int i);
 
 /// The smallest pressure of particle i and its neighbours [Pa].
 double least_pressure(const PairList& near, std::span<const double> pressure, int i);

@@ -19,8 +19,8 @@ namespace impinge {
 template <int Dim>
 class SurfaceClosure {
  public:
-  /// Depth of a surface particle below the surface [dp].
-  static constexpr double least_depth = 0.5;
+  /// Depth of a surface particle below the surface on the lattice, and the least that there is [dp].
+  static constexpr double usual_depth = 0.5, least_depth = 0.3;
 
   /// Radii of Laplacian and packing [dp].
   SurfaceClosure(KernelType type, double laplacian_radius, double packing_radius);
@@ -38,14 +38,14 @@ class SurfaceClosure {
   std::vector<double> weight_, curvature_, packing_;  // at least_depth, one step deeper, ...
 };
 
-/// Depth of particle i below the free surface [dp], at least least_depth: its distance to the planes half a spacing [m]
-/// outside the surface particles around, their normals along the asymmetries; the mean with weights 1/r_ij^6, so
-/// that around a bend the nearest count; infinite without any.
-/// Reads positions, asymmetries and surface marks of owned particles and halo.
+/// Depth of particle i below the free surface [dp], at least least_depth: that of `layer` for a surface particle. For
+/// others its distance to the planes at these depths outside the surface particles around, their normals along the
+/// asymmetries; the mean with weights 1/r_ij^6, so that around a bend the nearest count; infinite without any.
+/// `spacing`: dp [m]. Reads positions, asymmetries, surface marks and depths of owned particles, halo and images.
 template <int Dim>
 double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> position,
-                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface, double spacing,
-                     int i);
+                     std::span<const Vector<Dim>> asymmetry, std::span<const std::uint8_t> free_surface,
+                     std::span<const double> layer, double spacing, int i);
 
 /// Flatness of the free surface at particle i [0, 1], from the unit normals n_j (along the asymmetries) of the surface
 /// particles among it and its neighbours: 0 up to |sum n_j| = 0.8 of their number, 1 from 0.95 on, linear between; 1

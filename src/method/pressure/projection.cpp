@@ -10,6 +10,7 @@
 namespace impinge {
 
 constexpr int crowding_passes = 2;  // of means over neighbours
+constexpr int layer_passes = 3;     // likewise
 
 template <int Dim>
 Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const CellGrid<Dim>& cells)
@@ -19,6 +20,7 @@ Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const
       laplacian_factor_(2.0 * Dim /
                         (far_sums_.number_density * far_sums_.lambda * std::pow(settings.particles.spacing, 2))),
       closure_(settings.kernel.type, settings.kernel.laplacian_radius, settings.kernel.radius),
+      surface_layer_(settings.kernel.radius),
       solver_(comm, settings.pressure.tolerance) {
   if (solver_.is_two_level()) two_level_.emplace(comm, cells);
 }
@@ -42,6 +44,7 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
   {
     const PhaseLog log(Phase::assembly);
     find_image_offsets(step.dt, force, state);
+    find_layer(state);
     source = sources(step, force, state);
   }
   PressureReport report = try_solve(source, state, last_iterations);
@@ -56,6 +59,28 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
       state.particles.pressure[i] = std::max(state.particles.pressure[i], 0.0);
   share_pressure(state);
   return report;
+}
+
+// Of a single particle it tells of disorder, of several around it of the flow.
+template <int Dim>
+void Projection<Dim>::find_layer(const State<Dim>& state) {
+  const Particles<Dim>& particles = state.particles;
+  layer_.assign(particles.position.size(), SurfaceClosure<Dim>::usual_depth);
+  if (!settings_.free_surface.zero_outside) return;
+  const typename SurfaceLayer<Dim>::View view{state.near(),           particles.position, state.asymmetry,
+                                              particles.free_surface, particles.type,     settings_.particles.spacing};
+  for (int i = 0; i < particles.owned; ++i)
+    if (particles.free_surface[static_cast<std::size_t>(i)])
+      layer_[static_cast<std::size_t>(i)] = surface_layer_.depth(view, i);
+  for (int pass = 0; pass < layer_passes; ++pass) {
+    state.refresh(layer_);
+    std::vector<double> mean = layer_;
+    for (int i = 0; i < particles.owned; ++i)
+      if (particles.free_surface[static_cast<std::size_t>(i)])
+        mean[static_cast<std::size_t>(i)] = surface_layer_.mean(view, layer_, i);
+    layer_ = std::move(mean);
+  }
+  state.refresh(layer_);
 }
 
 template <int Dim>
@@ -107,7 +132,7 @@ Matrix<Dim> Projection<Dim>::slope_of_velocity(const State<Dim>& state, int i) c
 
 template <int Dim>
 double Projection<Dim>::depth(const State<Dim>& state, std::span<const int> around, int i) const {
-  return surface_depth<Dim>(around, state.particles.position, state.asymmetry, state.particles.free_surface,
+  return surface_depth<Dim>(around, state.particles.position, state.asymmetry, state.particles.free_surface, layer_,
                             settings_.particles.spacing, i);
 }
 
@@ -243,8 +268,11 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed
   }
   if (flatness == 0.0) return pushing();
   const Vector<Dim> normal = surface_normal<Dim>(near, state.asymmetry, particles.free_surface, i);
-  const std::optional<Vector<Dim>> even =
-      surface_gradient<Dim>(near, particles.position, particles.pressure, normal, settings_.particles.spacing, n0, i);
+  // Beyond this, which a film half a spacing thicker than the depth would have, the curvature is noise.
+  const double depth = layer_[self] * settings_.particles.spacing;
+  const double most = 2.0 * particles.pressure[self] / (depth * (depth + settings_.particles.spacing));
+  const std::optional<Vector<Dim>> even = surface_gradient<Dim>(
+      near, particles.position, particles.pressure, normal, depth, std::clamp(curvature_[self], -most, most), n0, i);
   if (!even) return pushing();
   const double share = std::min(flatness, calm(state, fall_speed, i));
   return share < 1.0 ? share * *even + (1.0 - share) * pushing() : *even;

@@ -11,6 +11,7 @@
 #include "impinge/method/settings.hpp"
 #include "impinge/method/state.hpp"
 #include "impinge/method/surface.hpp"
+#include "impinge/method/surface_layer.hpp"
 
 namespace impinge {
 
@@ -60,6 +61,7 @@ class Projection {
   std::size_t bytes() const;
 
  private:
+  void find_layer(const State<Dim>& state);
   void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
   std::vector<double> sources(const Step& step, const BodyForce<Dim>& force, State<Dim>& state);
   Matrix<Dim> slope_of_velocity(const State<Dim>& state, int i) const;
@@ -78,9 +80,11 @@ class Projection {
   LatticeSums far_sums_;     // of the Laplacian's radius
   double laplacian_factor_;  // [1/m^2]
   SurfaceClosure<Dim> closure_;
+  SurfaceLayer<Dim> surface_layer_;
   PressureSolver solver_;
   std::optional<TwoLevelPreconditioner<Dim>> two_level_;
   int partitions_seen_ = 0;           // by two_level_
+  std::vector<double> layer_;         // depth of surface particles, also of halo and images [dp]
   std::vector<double> curvature_;     // lap p of a flow that keeps free of divergence [Pa/m^2]; 0 where no part of it
   std::vector<double> image_offset_;  // of an image's pressure over that of its original [Pa]; empty: none
 };
