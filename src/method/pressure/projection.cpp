@@ -268,9 +268,10 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed
   }
   if (flatness == 0.0) return pushing();
   const Vector<Dim> normal = surface_normal<Dim>(near, state.asymmetry, particles.free_surface, i);
-  // Beyond this, which a film half a spacing thicker than the depth would have, the curvature is noise.
+  // In three dimensions jets are better without the curvature. Beyond `most`, which a film half a spacing thicker than
+  // the depth would have, it is noise.
   const double depth = layer_[self] * settings_.particles.spacing;
-  const double most = 2.0 * particles.pressure[self] / (depth * (depth + settings_.particles.spacing));
+  const double most = Dim == 2 ? 2.0 * particles.pressure[self] / (depth * (depth + settings_.particles.spacing)) : 0.0;
   const std::optional<Vector<Dim>> even = surface_gradient<Dim>(
       near, particles.position, particles.pressure, normal, depth, std::clamp(curvature_[self], -most, most), n0, i);
   if (!even) return pushing();
