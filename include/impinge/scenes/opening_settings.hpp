@@ -38,8 +38,8 @@ struct InletEntry {
   /// Distances from the axis of a circle or an annulus, or along the width from the middle [m], and what the speed is
   /// multiplied by there: linear in between, constant before and after; none: uniform.
   std::vector<double> profile_at, profile;
-  double start = 0.0;          ///< [s]
-  double stop = never;         ///< [s]
+  double start = 0.0;   ///< [s]
+  double stop = never;  ///< [s]
 };
 
 /// One table of [[outlet]].
