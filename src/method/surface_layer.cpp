@@ -8,8 +8,9 @@
 namespace impinge {
 namespace {
 
-constexpr double thickness = 1.5;     // of what counts as one layer [dp]
-constexpr double most_stretch = 0.4;  // of its thickness
+constexpr double thickness = 1.5;  // of what counts as one layer [dp]
+// Of its thickness: the tables of the closure begin at the least depth.
+constexpr double most_stretch = 1.0 - SurfaceClosure<2>::least_depth / SurfaceClosure<2>::usual_depth;
 
 }  // namespace
 

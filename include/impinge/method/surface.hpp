@@ -38,9 +38,9 @@ class SurfaceClosure {
   std::vector<double> weight_, curvature_, packing_;  // at least_depth, one step deeper, ...
 };
 
-/// Depth of particle i below the free surface [dp], at least least_depth: that of `layer` for a surface particle. For
-/// others its distance to the planes at these depths outside the surface particles around, their normals along the
-/// asymmetries; the mean with weights 1/r_ij^6, so that around a bend the nearest count; infinite without any.
+/// Depth of particle i below the free surface [dp]: that of `layer` for a surface particle. For others, at least
+/// usual_depth, its distance to the planes at these depths outside the surface particles around, their normals along
+/// the asymmetries; the mean with weights 1/r_ij^6, so that around a bend the nearest count; infinite without any.
 /// `spacing`: dp [m]. Reads positions, asymmetries, surface marks and depths of owned particles, halo and images.
 template <int Dim>
 double surface_depth(std::span<const int> around, std::span<const Vector<Dim>> position,
