@@ -89,7 +89,7 @@ int MirrorWalls<Dim>::way_of(const MirrorPath& path, const Reflection<Dim>& whol
   const auto moves = [&](int f) { return faces_.moves(f); };
   const auto holds = [&](int f) { return !faces_.slips(f); };
   const bool all_hold = std::ranges::all_of(path.faces(), holds);
-  ways_.push_back({path, whole, std::ranges::any_of(path.faces(), moves), all_hold, {}});
+  ways_.push_back({path, whole, std::ranges::any_of(path.faces(), moves), all_hold, {}, {}});
   const int number = static_cast<int>(ways_.size()) - 1;
   known_.emplace(path, number);
   return number;
@@ -244,7 +244,8 @@ void MirrorWalls<Dim>::append_own_images(const std::function<std::span<const int
         way_.push_back(static_cast<int>(ways_.size()));
         if (j < first_image_) {
           original_.push_back(j);
-          ways_.push_back({MirrorPath{}.then(f), at_face, faces_.moves(f), !faces_.slips(f), meeting.plane});
+          ways_.push_back(
+              {MirrorPath{}.then(f), at_face, faces_.moves(f), !faces_.slips(f), meeting.plane, meeting.bending});
         } else {
           const std::size_t image = other - static_cast<std::size_t>(first_image_);
           const Way flat = way(image);
@@ -252,7 +253,7 @@ void MirrorWalls<Dim>::append_own_images(const std::function<std::span<const int
           for (const int g : flat.path.faces()) path = path.then(g);
           original_.push_back(original_[image]);
           ways_.push_back({path, product(at_face, flat.whole), flat.moves || faces_.moves(f),
-                           flat.holds && !faces_.slips(f), meeting.plane});
+                           flat.holds && !faces_.slips(f), meeting.plane, meeting.bending});
         }
       }
     }
@@ -324,22 +325,29 @@ void MirrorWalls<Dim>::copy_held_velocities(const std::vector<Vector<Dim>>& posi
 }
 
 template <int Dim>
-void MirrorWalls<Dim>::apply_force(double dt, double density,
+void MirrorWalls<Dim>::apply_force(double dt, double after, double density,
                                    const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
                                    Particles<Dim>& particles, std::vector<double>& offset) const {
   offset.resize(count());
   for_images([&](std::size_t k, std::size_t at, std::size_t from) {
     double excess = 0.0;
-    Vector<Dim> change;
+    Vector<Dim> change, velocity = particles.velocity[from];
     along(k, particles.position[from],
           [&](int f, const Reflection<Dim>& single, const Vector<Dim>& before, const Vector<Dim>& behind) {
+            const auto jump = [&](const Vector<Dim>& a) { return a - single.linear * a; };
             const Vector<Dim> middle = before + 0.5 * (behind - before);
-            const Vector<Dim> excess_force = force(middle) - faces_.acceleration(f, middle);
+            const Vector<Dim> flow = velocity - faces_.velocity(f, before);
+            // Of fluid that follows the face, relative to the wall's, and of the wall's by its place.
+            Vector<Dim> relative = 2.0 * faces_.turning(f, flow);
+            if (!faces_.is_flat(f)) relative -= dot(flow, way(k).bending * flow) * way(k).plane.normal;
+            const Vector<Dim> carried = faces_.turning(f, faces_.velocity(f, middle));
+            const Vector<Dim> excess_force = force(middle) - faces_.acceleration(f, middle) - relative;
             excess += dot(excess_force, behind - before);
-            change = single.linear * change + excess_force - single.linear * excess_force;
+            change = single.linear * change + jump(dt * excess_force + after * (carried + relative));
+            velocity = faces_.velocity(f, behind) + single.linear * flow;
           });
     offset[k] = density * excess;
-    particles.velocity[at] += dt * change;
+    particles.velocity[at] += change;
   });
 }
 

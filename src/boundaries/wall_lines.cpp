@@ -471,7 +471,10 @@ Meeting<2> WallFaces<2>::meeting(int face, const Vector<2>& one, const Foot<2>& 
   const double first = norm(one - plane.point), second = norm(two - plane.point);
   const double cosine = (height + other_height) / norm(reflection_at(plane).of_position(two) - one);
   const double share = (first + second) / (first + second + 2.0 * data.bulge / data.radius * first * second / cosine);
-  return {plane, share};
+  const Vector<2> along{{-radial[1], radial[0]}};
+  Matrix<2> bending;
+  bending.add_product(data.bulge / data.radius * along, along);
+  return {plane, bending, share};
 }
 
 double WallFaces<2>::path_factor(const Vector<2>& from, const Vector<2>& image, const MirrorPath& path,

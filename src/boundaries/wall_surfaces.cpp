@@ -322,7 +322,9 @@ Meeting<3> WallFaces<3>::meeting(int, const Vector<3>& one, const Foot<3>& foot,
   const double tube = 2.0 * first * second / (first + second);
   const double spread =
       (1.0 + (a * one_in + b * two_in) * tube / cosine) * (1.0 + (a * one_across + b * two_across) * tube * cosine);
-  return {plane, spread > 0.0 ? 1.0 / spread : std::numeric_limits<double>::infinity()};
+  Matrix<3> bending;
+  for (std::size_t k = 0; k < 3; ++k) bending.row[k] = a * foot.bending.row[k] + b * other_foot.bending.row[k];
+  return {plane, bending, spread > 0.0 ? 1.0 / spread : std::numeric_limits<double>::infinity()};
 }
 
 bool WallFaces<3>::is_behind(int face, const Vector<3>& x) const {

@@ -56,8 +56,9 @@ struct Foot {
 /// Where a path meets a curved face.
 template <int Dim>
 struct Meeting {
-  Face<Dim> plane;     ///< touches the face there
-  double share = 0.0;  ///< of the pair in sums: that of a ray tube, see MirrorWalls [-]
+  Face<Dim> plane;      ///< touches the face there
+  Matrix<Dim> bending;  ///< of the face there, see Foot [1/m]
+  double share = 0.0;   ///< of the pair in sums: that of a ray tube, see MirrorWalls [-]
 };
 
 /// The walls of a scene: WallFaces<2> and WallFaces<3>.

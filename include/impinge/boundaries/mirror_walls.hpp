@@ -83,10 +83,14 @@ class MirrorWalls final : public PairFilter<Dim> {
   /// Those of a viscous fluid, which sticks to a wall that it does not slip along: there u' = V(y) - (u - V(x)).
   void copy_held_velocities(const std::vector<Vector<Dim>>& position, std::vector<Vector<Dim>>& velocity) const;
 
-  /// What a force per mass changes at an image: its pressure exceeds its original's by rho b.(y - x), its velocity is
-  /// the mirrored one and dt (b - M b), with b = g - a_w in the middle of the way, g the force and a_w the wall's
-  /// acceleration; at one face after the other. `offset`: of the pressures [Pa]. Reads positions, changes velocities.
-  void apply_force(double dt, double density, const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
+  /// What a force per mass, and the turning of fluid that follows a wall, change at an image. Its pressure exceeds its
+  /// original's by rho b.(y - x), its velocity is the mirrored one and (I - M)(dt b + after a_t), with
+  /// b = g - a_w - a_t in the middle of the way, g the force, a_w the wall's acceleration,
+  /// a_t = 2 Omega x v - n (v.K v) that of fluid at a velocity v relative to it, Omega the wall's rate of turning, K
+  /// its curvature, positive where it bulges into the fluid, and n its normal; at one face after the other. `after`:
+  /// time after which the fluid shall move along the wall [s]. `offset`: of the pressures [Pa]. Reads positions,
+  /// changes velocities.
+  void apply_force(double dt, double after, double density, const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
                    Particles<Dim>& particles, std::vector<double>& offset) const;
 
   /// Calls use(image, its index, its original's index) for every image.
@@ -128,9 +132,10 @@ class MirrorWalls final : public PairFilter<Dim> {
   struct Way {
     MirrorPath path;
     Reflection<Dim> whole;
-    bool moves;       ///< at a wall that moves
-    bool holds;       ///< at walls alone that a viscous fluid sticks to
-    Face<Dim> plane;  ///< of a curved face, which is the last before the particle that sees the image
+    bool moves;           ///< at a wall that moves
+    bool holds;           ///< at walls alone that a viscous fluid sticks to
+    Face<Dim> plane;      ///< of a curved face, which is the last before the particle that sees the image
+    Matrix<Dim> bending;  ///< likewise, see Foot [1/m]
   };
   const Way& way(std::size_t image) const { return ways_[static_cast<std::size_t>(way_[image])]; }
 

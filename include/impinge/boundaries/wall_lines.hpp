@@ -66,6 +66,8 @@ class WallFaces<2> {
   /// Velocity and acceleration of the wall's material at a position [m/s], [m/s^2].
   Vector<2> velocity(int face, const Vector<2>& x) const { return motions_.velocity(at(face).motion, x); }
   Vector<2> acceleration(int face, const Vector<2>& x) const { return motions_.acceleration(at(face).motion, x); }
+  /// Omega x a velocity, with the wall's rate of turning [m/s^2].
+  Vector<2> turning(int face, const Vector<2>& velocity) const { return motions_.turning(at(face).motion, velocity); }
   bool moves(int face) const { return at(face).motion >= 0; }
 
   /// True for a position on the dry side of a line that is wet on one side, nearer than the reach.

@@ -49,6 +49,10 @@ class WallMotions {
   Vector<Dim> acceleration(int number, const Vector<Dim>& x) const {
     return number < 0 ? Vector<Dim>{} : pose_[at(number)].acceleration_at(x);
   }
+  /// Omega x a velocity, with the body's rate of turning [m/s^2].
+  Vector<Dim> turning(int number, const Vector<Dim>& velocity) const {
+    return number < 0 ? Vector<Dim>{} : pose_[at(number)].spin * velocity;
+  }
 
   /// A position in the frame of the body, where its pose is the identity [m].
   Vector<Dim> at_rest(int number, const Vector<Dim>& x) const {

@@ -43,7 +43,7 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
   std::vector<double> source;
   {
     const PhaseLog log(Phase::assembly);
-    find_image_offsets(step.dt, force, state);
+    find_image_offsets(step, force, state);
     find_layer(state);
     source = sources(step, force, state);
   }
@@ -84,11 +84,12 @@ void Projection<Dim>::find_layer(const State<Dim>& state) {
 }
 
 template <int Dim>
-void Projection<Dim>::find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state) {
+void Projection<Dim>::find_image_offsets(const Step& step, const BodyForce<Dim>& force, State<Dim>& state) {
   image_offset_.clear();
-  if (state.walls.empty() || (force.is_zero() && !state.walls.any_moves())) return;
+  const MirrorWalls<Dim>& walls = state.walls;
+  if (force.is_zero() && !walls.any_moves() && !walls.faces().has_curves()) return;
   const auto force_at = [&](const Vector<Dim>& position) { return force.at(position); };
-  state.walls.apply_force(dt, settings_.fluid.density, force_at, state.particles, image_offset_);
+  walls.apply_force(step.dt, step.after, settings_.fluid.density, force_at, state.particles, image_offset_);
 }
 
 template <int Dim>

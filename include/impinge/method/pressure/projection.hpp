@@ -62,7 +62,7 @@ class Projection {
 
  private:
   void find_layer(const State<Dim>& state);
-  void find_image_offsets(double dt, const BodyForce<Dim>& force, State<Dim>& state);
+  void find_image_offsets(const Step& step, const BodyForce<Dim>& force, State<Dim>& state);
   std::vector<double> sources(const Step& step, const BodyForce<Dim>& force, State<Dim>& state);
   Matrix<Dim> slope_of_velocity(const State<Dim>& state, int i) const;
   double depth(const State<Dim>& state, std::span<const int> around, int i) const;
