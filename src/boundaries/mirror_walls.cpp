@@ -337,13 +337,12 @@ void MirrorWalls<Dim>::apply_force(double dt, double after, double density,
             const auto jump = [&](const Vector<Dim>& a) { return a - single.linear * a; };
             const Vector<Dim> middle = before + 0.5 * (behind - before);
             const Vector<Dim> flow = velocity - faces_.velocity(f, before);
-            // Of fluid that follows the face, relative to the wall's, and of the wall's by its place.
-            Vector<Dim> relative = 2.0 * faces_.turning(f, flow);
-            if (!faces_.is_flat(f)) relative -= dot(flow, way(k).bending * flow) * way(k).plane.normal;
-            const Vector<Dim> carried = faces_.turning(f, faces_.velocity(f, middle));
-            const Vector<Dim> excess_force = force(middle) - faces_.acceleration(f, middle) - relative;
+            Vector<Dim> along_wall = 2.0 * faces_.turning(f, flow);
+            if (!faces_.is_flat(f)) along_wall -= dot(flow, way(k).bending * flow) * way(k).plane.normal;
+            const Vector<Dim> with_wall = faces_.turning(f, faces_.velocity(f, middle));
+            const Vector<Dim> excess_force = force(middle) - faces_.acceleration(f, middle) - along_wall;
             excess += dot(excess_force, behind - before);
-            change = single.linear * change + jump(dt * excess_force + after * (carried + relative));
+            change = single.linear * change + jump(dt * excess_force + after * (with_wall + along_wall));
             velocity = faces_.velocity(f, behind) + single.linear * flow;
           });
     offset[k] = density * excess;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "impinge/cases/make_simulation.hpp"
 #include "mpi/gather.hpp"
@@ -70,6 +71,58 @@ points = [[0, 0], [0.15, 0.15], [0.15, 0.25], [-0.15, 0.25], [-0.15, 0.15]]
   }
   EXPECT_NEAR(-sum / steps / weight, 1.0, 0.003);
   EXPECT_LT(fastest, 0.02);  // 0.01 sqrt(g h)
+}
+
+// Half a ring's outline about the origin.
+std::string half_ring(double radius, double hole, double begin) {
+  constexpr int parts = 90;
+  std::string points;
+  const auto add = [&](double r, int k) {
+    const double angle = begin + std::numbers::pi * k / parts;
+    points += fmt::format("[{:.5f}, {:.5f}], ", r * std::cos(angle), r * std::sin(angle));
+  };
+  for (int k = 0; k <= parts; ++k) add(radius, k);
+  for (int k = parts; k >= 0; --k) add(hole, k);
+  return fmt::format("[[fluid.region]]\nshape = \"polygon\"\npoints = [{}]\nabout = [0, 0]\nspin = 1\n", points);
+}
+
+// A ring of fluid in solid rotation presses with rho (r^2 - b^2)/2, b the radius of its hole, however the drum turns.
+TEST(Walls, TurnTheFluidThatFollowsThem) {
+  constexpr double radius = 0.2, hole = 0.1;
+  for (const double spin : {0.0, 0.5, 1.0}) {
+    const Case config =
+        scene(half_ring(0.9999 * radius, hole, 0.0) + half_ring(0.9999 * radius, hole, std::numbers::pi) +
+                  fmt::format(R"([[wall]]
+shape = "circle"
+center = [0, 0]
+radius = {}
+wet = "inside"
+motion = "turn"
+[[motion]]
+name = "turn"
+type = "constant"
+spin = {}
+)",
+                              radius, spin),
+              3.0, {"time.dt=0.01"});
+    auto simulation = make_simulation<2>(comm, config);
+    const Particles<2>& particles = simulation.particles();
+    const double kinetic = simulation.report().kinetic_energy;
+    double sum = 0.0;
+    std::int64_t count = 0;
+    while (simulation.report().time < config.time.end - 1e-9) {
+      simulation.step();
+      if (simulation.report().time < 1.5) continue;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
+        if (particles.type[i] != ParticleType::wall) continue;
+        sum += particles.pressure[i];
+        ++count;
+      }
+    }
+    const double mean = sum_over_ranks(comm, sum) / static_cast<double>(sum_over_ranks(comm, count));
+    EXPECT_NEAR(mean / (0.5 * rho * (radius * radius - hole * hole)), 1.0, 0.01) << "spin " << spin;
+    EXPECT_NEAR(simulation.report().kinetic_energy / kinetic, 1.0, 0.01) << "spin " << spin;
+  }
 }
 
 constexpr const char* moving_tank = R"([[wall]]

@@ -83,13 +83,10 @@ class MirrorWalls final : public PairFilter<Dim> {
   /// Those of a viscous fluid, which sticks to a wall that it does not slip along: there u' = V(y) - (u - V(x)).
   void copy_held_velocities(const std::vector<Vector<Dim>>& position, std::vector<Vector<Dim>>& velocity) const;
 
-  /// What a force per mass, and the turning of fluid that follows a wall, change at an image. Its pressure exceeds its
-  /// original's by rho b.(y - x), its velocity is the mirrored one and (I - M)(dt b + after a_t), with
-  /// b = g - a_w - a_t in the middle of the way, g the force, a_w the wall's acceleration,
-  /// a_t = 2 Omega x v - n (v.K v) that of fluid at a velocity v relative to it, Omega the wall's rate of turning, K
-  /// its curvature, positive where it bulges into the fluid, and n its normal; at one face after the other. `after`:
-  /// time after which the fluid shall move along the wall [s]. `offset`: of the pressures [Pa]. Reads positions,
-  /// changes velocities.
+  /// What a force per mass g, and the acceleration a of fluid that follows a wall, change at an image, docs/method.md
+  /// (17): its pressure exceeds its original's by rho b.(y - x), b = g - a, and to the mirrored velocity comes
+  /// (I - M)(dt b + after (a - dV/dt)); at one face after the other. `after`: time that particles move on before they
+  /// shall move along the wall [s]. `offset`: of the pressures [Pa]. Reads positions, changes velocities.
   void apply_force(double dt, double after, double density, const std::function<Vector<Dim>(const Vector<Dim>&)>& force,
                    Particles<Dim>& particles, std::vector<double>& offset) const;
 
