@@ -27,7 +27,8 @@ std::vector<std::string> Gauges<Dim>::columns() const {
 }
 
 template <int Dim>
-std::vector<double> Gauges<Dim>::measure(MPI_Comm comm, const Particles<Dim>& particles) const {
+std::vector<double> Gauges<Dim>::measure(MPI_Comm comm, const Particles<Dim>& particles,
+                                         std::span<const double> depth) const {
   const double width = 0.75 * spacing_;
   const double half = 0.5 * spacing_;
   std::vector<double> levels(gauges_.size(), 0.0);
@@ -40,7 +41,8 @@ std::vector<double> Gauges<Dim>::measure(MPI_Comm comm, const Particles<Dim>& pa
       if (along < -half || along > gauge.length + half) continue;
       const Vector<Dim> across = offset - along * gauge.direction;
       if (dot(across, across) > width * width) continue;
-      levels[k] = std::max(levels[k], std::min(along + half, gauge.length));
+      const double above = depth.empty() ? half : depth[i] * spacing_;
+      levels[k] = std::max(levels[k], std::min(along + above, gauge.length));
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, levels.data(), static_cast<int>(levels.size()), MPI_DOUBLE, MPI_MAX, comm);

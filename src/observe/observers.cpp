@@ -52,7 +52,8 @@ void Observers<Dim>::for_tables(Self& self, Use&& use) {
   MPI_Comm comm = self.comm_;
   add("probes", self.probes_,
       [&](const auto& now) { return self.probes_.measure(comm, now.particles, now.report.time); });
-  add("gauges", self.gauges_, [&](const auto& now) { return self.gauges_.measure(comm, now.particles); });
+  add("gauges", self.gauges_,
+      [&](const auto& now) { return self.gauges_.measure(comm, now.particles, now.surface_depth); });
   add("sections", self.sections_, [&](const auto& now) { return self.measure_sections(now.report); });
   add("forces", self.forces_,
       [&](const auto& now) { return self.forces_.measure(comm, now.particles, now.report.time); });
@@ -95,15 +96,14 @@ std::vector<double> Observers<Dim>::measure_sections(const StepReport& report) {
 }
 
 template <int Dim>
-std::vector<TableLine> Observers<Dim>::observe(const Particles<Dim>& particles, const std::vector<Outlet<Dim>>& outlets,
-                                               const StepReport& report) {
-  if (!sections_.empty()) sections_.count(particles);
-  const bool due = is_due(report);
-  last_time_ = report.time;
+std::vector<TableLine> Observers<Dim>::observe(const Now& now) {
+  if (!sections_.empty()) sections_.count(now.particles);
+  const bool due = is_due(now.report);
+  last_time_ = now.report.time;
   if (!due) return {};
   std::vector<TableLine> rows;
   for_tables(*this, [&](const char* kind, auto&, auto measure) {
-    rows.push_back({kind, row(report, measure(Now{particles, outlets, report}))});
+    rows.push_back({kind, row(now.report, measure(now))});
   });
   return rows;
 }

@@ -295,7 +295,8 @@ bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observe
       throw;
     }
     output.record(report, seconds_since(step_start));
-    output.record(observers.observe(simulation.particles(), simulation.outlets(), report));
+    output.record(
+        observers.observe({simulation.particles(), simulation.surface_depth(), simulation.outlets(), report}));
     if (!options_checked && (report.pressure.iterations > 0 || finished())) {
       refuse_unused_options(comm, simulation.pressure_solver().default_options());
       options_checked = true;

@@ -28,7 +28,8 @@ struct ObservedRun {
 
   std::vector<TableLine> step() {
     simulation.step();
-    return observers.observe(simulation.particles(), simulation.outlets(), simulation.report());
+    return observers.observe(
+        {simulation.particles(), simulation.surface_depth(), simulation.outlets(), simulation.report()});
   }
 };
 

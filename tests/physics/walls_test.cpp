@@ -125,6 +125,31 @@ spin = {}
   }
 }
 
+TEST(Walls, LetGoOfTheWaterBelowThem) {
+  const Case config = scene(R"(fluid.gravity = [0, -9.81]
+[[wall]]
+shape = "box"
+low = [0, 0]
+high = [0.3, 0.4]
+wet = "inside"
+[[fluid.region]]
+shape = "box"
+low = [0.08, 0.3]
+high = [0.22, 0.4]
+)",
+                            0.15);
+  auto simulation = make_simulation<2>(comm, config);
+  const auto height = [&] {
+    double sum = 0.0;
+    const auto places = fluid_places(simulation);
+    for (const auto& [id, place] : places) sum += place[1];
+    return sum / static_cast<double>(places.size());
+  };
+  const double before = height();
+  while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+  EXPECT_NEAR((before - height()) / (0.5 * gravity * std::pow(simulation.report().time, 2)), 1.0, 0.01);
+}
+
 constexpr const char* moving_tank = R"([[wall]]
 shape = "box"
 low = [0, 0]

@@ -208,8 +208,9 @@ MethodSettings method() {
   return settings;
 }
 
-std::vector<double> levels(const GaugeSettings& gauge, const Particles<2>& particles) {
-  return Gauges<2>({gauge}, open_scene<2>(), method()).measure(MPI_COMM_SELF, particles);
+std::vector<double> levels(const GaugeSettings& gauge, const Particles<2>& particles,
+                           std::span<const double> depth = {}) {
+  return Gauges<2>({gauge}, open_scene<2>(), method()).measure(MPI_COMM_SELF, particles, depth);
 }
 
 TEST(Gauge, IsTheFarthestFluidAlongTheLine) {
@@ -223,6 +224,7 @@ TEST(Gauge, IsTheFarthestFluidAlongTheLine) {
   EXPECT_NEAR(levels({.name = "", .point = {0.5, 0}, .direction = {0, 1}, .length = 0.4}, particles)[0], 0.4, 1e-12);
   EXPECT_EQ(levels({.name = "", .point = {0.53, 0}, .direction = {0, 1}, .length = 1.0}, particles)[0], 0.0);
   EXPECT_EQ(levels({.name = "", .point = {0.5, 0.7}, .direction = {0, 1}, .length = 1.0}, particles)[0], 0.0);
+  EXPECT_NEAR(levels(up, particles, std::vector<double>(6, 0.6))[0], 0.61, 1e-12);
   particles.number_density.back() = 0.0;  // spray
   EXPECT_NEAR(levels(up, particles)[0], 0.5, 1e-12);
 }
@@ -316,7 +318,7 @@ std::vector<std::int64_t> sampled(double interval, int steps) {
   std::vector<std::int64_t> found;
   for (report.step = 1; report.step <= 20; ++report.step) {
     report.time += 0.01;
-    for (const TableLine& row : observers.observe(particles, {}, report)) found.push_back(std::stoll(row.text));
+    for (const TableLine& row : observers.observe({particles, {}, {}, report})) found.push_back(std::stoll(row.text));
     if (report.step == 7) observers = start();
   }
   return found;
@@ -350,10 +352,10 @@ TEST(Observers, SectionsGoOnFromTheirLastRow) {
   EXPECT_TRUE(observers.rows_for_restart(report).empty());  // the file has it
   report.step = 6;
   report.time = 1.0;
-  EXPECT_EQ(observers.observe(particles, {}, report)[0].text, "6,1,0,0.25");
+  EXPECT_EQ(observers.observe({particles, {}, {}, report})[0].text, "6,1,0,0.25");
   report.step = 7;
   report.time = 2.0;
-  EXPECT_TRUE(observers.observe(particles, {}, report).empty());
+  EXPECT_TRUE(observers.observe({particles, {}, {}, report}).empty());
   EXPECT_EQ(observers.rows_for_restart(report)[0].text, "7,2,0,0.25");
 }
 

@@ -2,6 +2,7 @@
 // A run of the method, step by step.
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "impinge/boundaries/scene.hpp"
@@ -50,6 +51,10 @@ class Simulation {
 
   /// Time span over which the wall pressure has been averaged so far.
   const AveragingWindow& window() const { return window_; }
+
+  /// How deep the last pressure took surface particles to be below the surface, others half a spacing; owned ones first
+  /// [dp]. Empty before the first step.
+  std::span<const double> surface_depth() const { return projection_.layer(); }
 
   /// Outlets, each with the fluid that has left through it if it is a region.
   const std::vector<Outlet<Dim>>& outlets() const { return scene_.outlets; }

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ class Gauges {
   std::vector<std::string> columns() const;
 
   /// The level of each gauge [m], the same on all ranks: the largest distance along the line, from where it begins, of
-  /// the fluid particles within 0.75 dp of it, and half a spacing; at most the length, 0 on a dry line. Spray does not
-  /// count. Collective.
-  std::vector<double> measure(MPI_Comm comm, const Particles<Dim>& particles) const;
+  /// the fluid particles within 0.75 dp of it, and the particle's depth; at most the length, 0 on a dry line. Spray
+  /// does not count. `depth`: below the surface, of the owned particles [dp]; empty: half a spacing. Collective.
+  std::vector<double> measure(MPI_Comm comm, const Particles<Dim>& particles, std::span<const double> depth) const;
 
  private:
   struct Gauge {

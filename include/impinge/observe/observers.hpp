@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,14 @@ struct TableLine {
 template <int Dim>
 class Observers {
  public:
+  /// What there is after a step.
+  struct Now {
+    const Particles<Dim>& particles;
+    std::span<const double> surface_depth;    ///< see Simulation
+    const std::vector<Outlet<Dim>>& outlets;  ///< as they have counted
+    const StepReport& report;
+  };
+
   /// `scene`: as at the start. `particles`, `report`: as the run begins or goes on. Collective.
   Observers(MPI_Comm comm, const ObserverSettings& settings, const MethodSettings& method, const Scene<Dim>& scene,
             const Particles<Dim>& particles, const StepReport& report);
@@ -35,22 +44,13 @@ class Observers {
   /// that is none of it.
   void go_on(const std::string& last_row);
 
-  /// To be called after each step. `outlets`: as they have counted. Gives the rows that are due, the same on all ranks.
-  /// Collective.
-  std::vector<TableLine> observe(const Particles<Dim>& particles, const std::vector<Outlet<Dim>>& outlets,
-                                 const StepReport& report);
+  /// To be called after each step. Gives the rows that are due, the same on all ranks. Collective.
+  std::vector<TableLine> observe(const Now& now);
 
   /// What a restart needs: the row of the sections after a step that had none. Collective.
   std::vector<TableLine> rows_for_restart(const StepReport& report);
 
  private:
-  /// What there is after a step.
-  struct Now {
-    const Particles<Dim>& particles;
-    const std::vector<Outlet<Dim>>& outlets;
-    const StepReport& report;
-  };
-
   bool is_due(const StepReport& report) const;
   std::vector<double> measure_sections(const StepReport& report);
   template <class Self, class Use>

@@ -226,8 +226,10 @@ void Projection<Dim>::share_pressure(State<Dim>& state) const {
   std::vector<double>& pressure = state.particles.pressure;
   state.refresh(pressure);
   if (!image_offset_.empty())
-    state.walls.for_images(
-        [&](std::size_t image, std::size_t at, std::size_t) { pressure[at] += image_offset_[image]; });
+    state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t) {
+      pressure[at] += image_offset_[image];
+      if (settings_.pressure.clamp_negative) pressure[at] = std::max(pressure[at], 0.0);
+    });
   if (settings_.walls.model != WallModel::mirror) return;
   for (std::size_t i = 0; i < state.owned(); ++i)
     if (state.particles.type[i] == ParticleType::wall)

@@ -57,6 +57,9 @@ class Projection {
   /// Gives the preconditioner the owners of the cells where they are new to it.
   void follow_partition(const Decomposition<Dim>& decomposition);
 
+  /// See Simulation.
+  std::span<const double> layer() const { return layer_; }
+
   /// Memory of matrix and preconditioner [bytes].
   std::size_t bytes() const;
 
