@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "impinge/core/table.hpp"
+
 namespace impinge {
 namespace {
 
@@ -20,11 +22,8 @@ const Inlet<Dim>& inlet_of(const std::vector<Inlet<Dim>>& inlets, const Vector<D
 template <int Dim>
 double Inlet<Dim>::speed_at(double time) const {
   if (speeds.empty()) return speed;
-  const auto after = std::ranges::upper_bound(speeds, time, {}, &SpeedEntry::time);
-  if (after == speeds.begin()) return speeds.front().speed;
-  if (after == speeds.end()) return speeds.back().speed;
-  const SpeedEntry& before = *(after - 1);
-  return before.speed + (time - before.time) / (after->time - before.time) * (after->speed - before.speed);
+  const auto [before, after, share] = place_in(speeds, time, &SpeedEntry::time);
+  return std::lerp(speeds[before].speed, speeds[after].speed, share);
 }
 
 template <int Dim>

@@ -1,8 +1,10 @@
 #include "impinge/method/body_force.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "impinge/core/mpi.hpp"
+#include "impinge/core/table.hpp"
 
 namespace impinge {
 namespace {
@@ -10,13 +12,9 @@ namespace {
 Numbers gravity_at(const FluidSettings& fluid, double time) {
   const auto& table = fluid.gravity_at;
   if (table.empty()) return fluid.gravity;
-  const auto after = std::ranges::upper_bound(table, time, {}, &GravityEntry::time);
-  if (after == table.begin()) return table.front().value;
-  if (after == table.end()) return table.back().value;
-  const auto before = std::prev(after);
-  const double share = (time - before->time) / (after->time - before->time);
-  Numbers gravity = before->value;
-  for (std::size_t k = 0; k < gravity.size(); ++k) gravity[k] += share * (after->value[k] - gravity[k]);
+  const auto [before, after, share] = place_in(table, time, &GravityEntry::time);
+  Numbers gravity = table[before].value;
+  for (std::size_t k = 0; k < gravity.size(); ++k) gravity[k] = std::lerp(gravity[k], table[after].value[k], share);
   return gravity;
 }
 

@@ -67,9 +67,7 @@ template <int Dim>
 double DampingZones<Dim>::rate(const Vector<Dim>& position) const {
   double sum = 0.0;
   for (const Zone& zone : zones_) {
-    bool is_inside = true;
-    for (int k = 0; k < Dim; ++k) is_inside &= position[k] >= zone.box.low[k] && position[k] <= zone.box.high[k];
-    if (!is_inside) continue;
+    if (!zone.box.contains(position)) continue;
     const double share = zone.length > 0.0 ? (dot(position, zone.direction) - zone.begin) / zone.length : 1.0;
     sum += zone.strength * share * share;
   }

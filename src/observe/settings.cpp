@@ -52,13 +52,6 @@ std::string box_text(const Box<Dim>& box) {
                      fmt::join(box.high.component, ", "));
 }
 
-template <int Dim>
-bool is_in(const Box<Dim>& box, const Vector<Dim>& point, double tolerance) {
-  for (int k = 0; k < Dim; ++k)
-    if (!(point[k] >= box.low[k] - tolerance && point[k] <= box.high[k] + tolerance)) return false;
-  return true;
-}
-
 /// The wall that a point lies in at the start, as a text; nothing if all is well. `depth`: what does not count [m].
 template <int Dim>
 std::string wall_around(const Scene<Dim>& scene, const Vector<Dim>& point, double depth) {
@@ -161,7 +154,7 @@ void check_observers_in(Keys& keys, const Scene<Dim>& scene, double spacing, con
     if (const double most = norm(scene.bounds.high - scene.bounds.low); probe.diameter > most)
       keys.mistake(probe.diameter, fmt::format("larger than the scene; allowed: [0, {:.6g}] (m)", most));
     if (probe.wall == no_wall) {
-      if (!is_in(scene.bounds, position, tolerance)) {
+      if (!scene.bounds.contains(position, tolerance)) {
         keys.mistake(probe.position, "outside the scene; " + inside);
       } else if (const std::string wall = wall_around(scene, position, tolerance); !wall.empty()) {
         keys.mistake(probe.position, fmt::format("inside {}; allowed: in the fluid or on the wall", wall));
@@ -179,15 +172,15 @@ void check_observers_in(Keys& keys, const Scene<Dim>& scene, double spacing, con
     }
   }
   for (const GaugeSettings& gauge : settings.gauges)
-    if (keys.usable(gauge.point) && !is_in(scene.bounds, vector_of<Dim>(gauge.point), tolerance))
+    if (keys.usable(gauge.point) && !scene.bounds.contains(vector_of<Dim>(gauge.point), tolerance))
       keys.mistake(gauge.point, "outside the scene; " + inside);
   for (const SectionSettings& section : settings.sections) {
     if (!keys.usable(section.begin, section.end)) continue;
     for (const Numbers* end : {&section.begin, &section.end})
-      if (!is_in(scene.bounds, vector_of<Dim>(*end), tolerance)) keys.mistake(*end, "outside the scene; " + inside);
+      if (!scene.bounds.contains(vector_of<Dim>(*end), tolerance)) keys.mistake(*end, "outside the scene; " + inside);
     const std::vector<Vector<Dim>> corners = corners_of<Dim>(section);
     if (keys.usable(section.side) && std::any_of(corners.begin() + 2, corners.end(), [&](const Vector<Dim>& corner) {
-          return !is_in(scene.bounds, corner, tolerance);
+          return !scene.bounds.contains(corner, tolerance);
         }))
       keys.mistake(section.side, "ends outside the scene; " + inside);
   }

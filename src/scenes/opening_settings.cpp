@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "impinge/core/table.hpp"
 #include "impinge/scenes/check_names.hpp"
 
 namespace impinge {
@@ -134,12 +135,8 @@ std::pair<double, double> reach_of_profile(const InletEntry& inlet) {
 }
 
 double profile_at(const InletEntry& inlet, double place) {
-  const auto after = std::ranges::upper_bound(inlet.profile_at, place);
-  const auto k = static_cast<std::size_t>(after - inlet.profile_at.begin());
-  if (k == 0) return inlet.profile.front();
-  if (after == inlet.profile_at.end()) return inlet.profile.back();
-  const double share = (place - inlet.profile_at[k - 1]) / (*after - inlet.profile_at[k - 1]);
-  return (1.0 - share) * inlet.profile[k - 1] + share * inlet.profile[k];
+  const auto [before, after, share] = place_in(inlet.profile_at, place);
+  return std::lerp(inlet.profile[before], inlet.profile[after], share);
 }
 
 /// The area between two places, of a round section over 2 pi, of another one per length of the other side.
@@ -467,8 +464,9 @@ std::optional<Outlet<Dim>> outlet_of(const OutletEntry& entry) {
   if (!shape) return {};
   Outlet<Dim> outlet;
   outlet.name = entry.name;
-  outlet.region = [shape, placement = placement_of<Dim>(entry)](const Vector<Dim>& position) {
-    return shape->contains(placement.origin_of(position));
+  outlet.region = [shape, bounds = shape->bounds(), placement = placement_of<Dim>(entry)](const Vector<Dim>& position) {
+    const Vector<Dim> place = placement.origin_of(position);
+    return bounds.contains(place) && shape->contains(place);
   };
   return outlet;
 }

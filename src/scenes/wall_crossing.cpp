@@ -24,9 +24,7 @@ enum class Side { left, right, on, unknown };
 
 /// The side of an outline that a point is on: of a line, unknown beyond its ends.
 Side side_of(const Outline& outline, const Vector<2>& point, double margin) {
-  const Box<2> box = outline.bounds();
-  bool is_far = false;
-  for (int k = 0; k < 2; ++k) is_far |= point[k] < box.low[k] - margin || point[k] > box.high[k] + margin;
+  const bool is_far = !outline.bounds().contains(point, margin);
   if (is_far && outline.closed()) return Side::right;
   if (outline.closed()) {
     const double distance = outline.distance(point);

@@ -135,6 +135,13 @@ struct Box {
     for (int axis = 0; axis < Dim; ++axis) result[axis] = (k >> axis) & 1 ? high[axis] : low[axis];
     return result;
   }
+
+  /// True within the box and a margin around it, on the surface too.
+  bool contains(const Vector<Dim>& point, double margin = 0.0) const {
+    for (int axis = 0; axis < Dim; ++axis)
+      if (!(point[axis] >= low[axis] - margin && point[axis] <= high[axis] + margin)) return false;
+    return true;
+  }
 };
 
 }  // namespace impinge
