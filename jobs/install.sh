@@ -3,6 +3,7 @@
 # As root or as a user with sudo. Where apt is not at hand it says what is missing and stops.
 # Usage: jobs/install.sh            install what is missing
 #        jobs/install.sh --list     print the packages and stop
+#        jobs/install.sh --peers    install what jobs/peers.sh needs besides: OpenFOAM
 #        jobs/install.sh --tools    install what tests/fuzz.sh, tests/valgrind.sh, the test of the page and films in mp4 need besides
 set -euo pipefail
 
@@ -17,9 +18,12 @@ packages=(
   file
 )
 tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg chromium chromium-driver python3-selenium ffmpeg)
+peers=(openfoam)
 
 if [ "${1:-}" = --tools ]; then
   packages+=("${tools[@]}")
+elif [ "${1:-}" = --peers ]; then
+  packages+=("${peers[@]}")
 elif [ "${1:-}" = --list ]; then
   printf '%s\n' "${packages[@]}"
   exit 0

@@ -18,7 +18,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 KEYS = ("kernel.type=singular", "kernel.radius=2.1", "kernel.laplacian_radius=4.01", "pressure.gamma=0.01",
         "pressure.density_rate=0.3", "pressure.packing=false", "pressure.corrected_divergence=false",
-        "pressure.corrected_gradient=false", "pressure.tolerance=1e-9", "pressure.clamp_negative=false",
+        "pressure.corrected_gradient=false", "pressure.tolerance=1e-9", "pressure.clamp_negative=true",
         "walls.model=particles", "free_surface.surface_density=0.9", "free_surface.interior_density=1.1",
         "free_surface.asymmetry=0.7", "free_surface.zero_outside=false", "shifting.coefficient=0",
         "shifting.least_distance=0", "shifting.correct_velocity=false", "smoothing.rate=0", "collision.distance=0",

@@ -15,6 +15,7 @@ void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.pressure.packing, true, false);
   use(s.pressure.corrected_divergence, true, false);
   use(s.pressure.corrected_gradient, true, false);
+  use(s.pressure.clamp_negative, false, true);
   use(s.walls.model, WallModel::mirror, WallModel::particles);
   use(s.free_surface.zero_outside, true, false);
   use(s.shifting.coefficient, s.dimension == 3 ? 3.0 : 1.0, 0.0);
@@ -80,7 +81,10 @@ void declare_method(Keys& keys, MethodSettings& s) {
            "rougher the surface, the more of the paper's at it, and of the smallest pressure around beside it");
   keys.add("pressure.tolerance", s.pressure.tolerance,
            "relative residual at which the pressure equation counts as solved", {.range = above_to(0, 1e-6)});
-  keys.add("pressure.clamp_negative", s.pressure.clamp_negative, "set negative pressures to zero after the solve");
+  keys.add(
+      "pressure.clamp_negative", s.pressure.clamp_negative,
+      "set negative pressures to zero after the solve; false: only where fluid tears, beside a free surface that is "
+      "rough or in disordered motion, and at walls beside a free surface");
 
   keys.add("walls.model", s.walls.model,
            "mirror: the fluid's mirror images; particles: wall particles, and ghosts without a pressure",

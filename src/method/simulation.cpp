@@ -141,7 +141,7 @@ void Simulation<Dim>::try_step(double target) {
   pass_boundaries();
   redistribute();
   find_neighbours();
-  solve_pressure(rule, force, std::max(flow.speed, 3.0 * fall_speed));
+  solve_pressure(rule, force, std::max(flow.speed, 3.0 * fall_speed), fall_speed);
   correct(rule, flow.speed, fall_speed);
   report_.time = end;
   place_wall_points(end);
@@ -378,9 +378,10 @@ void Simulation<Dim>::find_neighbours() {
 }
 
 template <int Dim>
-void Simulation<Dim>::solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed) {
-  report_.pressure = projection_.solve({.dt = rule.dt, .after = rule.after, .speed = speed}, force, state_,
-                                       report_.pressure.iterations, report_.cold_solves);
+void Simulation<Dim>::solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed,
+                                     double fall_speed) {
+  report_.pressure = projection_.solve({.dt = rule.dt, .after = rule.after, .speed = speed, .fall_speed = fall_speed},
+                                       force, state_, report_.pressure.iterations, report_.cold_solves);
   if (!report_.pressure.failure.empty()) fail(Phase::solve, report_.pressure.failure);
 }
 

@@ -11,8 +11,7 @@ constexpr double table_step = 0.02;  // [dp]
 constexpr double rough = 0.8;        // mean of the normals' sum at which a surface counts as rough
 constexpr double flat = 0.95;        // likewise as flat
 constexpr double still = 0.05;       // disordered motion that counts as none [fall speeds]
-constexpr double agitated = 0.2;     // likewise from which on the calm is least
-constexpr double least_calm = 0.5;   // still less would only make the surface noisier
+constexpr double agitated = 0.2;     // likewise that counts as wholly disordered
 constexpr double own_weight = 5.0;   // of a surface particle in its own normal; a neighbour next to it has 0.8
 
 // The sums of term(W, d_g, depth) over the lattice points beyond a flat surface that a particle misses, at least_depth
@@ -110,8 +109,8 @@ bool is_beside_surface(const PairList& near, std::span<const std::uint8_t> free_
 }
 
 template <int Dim>
-double surface_calm(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
-                    const Matrix<Dim>& slope, double fall_speed, int i) {
+double disorder(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                const Matrix<Dim>& slope, double fall_speed, int i) {
   const auto self = static_cast<std::size_t>(i);
   double most = 0.0;
   for (int k = near.begin(i); k < near.end(i); ++k) {
@@ -119,8 +118,7 @@ double surface_calm(const PairList& near, std::span<const Vector<Dim>> position,
     const Vector<Dim> rest = velocity[j] - velocity[self] - slope * (position[j] - position[self]);
     most = std::max(most, dot(rest, rest));
   }
-  const double motion = std::clamp((std::sqrt(most) / fall_speed - still) / (agitated - still), 0.0, 1.0);
-  return 1.0 + (least_calm - 1.0) * motion;
+  return std::clamp((std::sqrt(most) / fall_speed - still) / (agitated - still), 0.0, 1.0);
 }
 
 template <int Dim>
@@ -143,10 +141,10 @@ template double surface_depth<2>(std::span<const int>, std::span<const Vector<2>
                                  std::span<const std::uint8_t>, std::span<const double>, double, int);
 template double surface_flatness<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template double surface_flatness<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
-template double surface_calm<2>(const PairList&, std::span<const Vector<2>>, std::span<const Vector<2>>,
-                                const Matrix<2>&, double, int);
-template double surface_calm<3>(const PairList&, std::span<const Vector<3>>, std::span<const Vector<3>>,
-                                const Matrix<3>&, double, int);
+template double disorder<2>(const PairList&, std::span<const Vector<2>>, std::span<const Vector<2>>, const Matrix<2>&,
+                            double, int);
+template double disorder<3>(const PairList&, std::span<const Vector<3>>, std::span<const Vector<3>>, const Matrix<3>&,
+                            double, int);
 template Vector<2> surface_normal<2>(const PairList&, std::span<const Vector<2>>, std::span<const std::uint8_t>, int);
 template Vector<3> surface_normal<3>(const PairList&, std::span<const Vector<3>>, std::span<const std::uint8_t>, int);
 template double surface_depth<3>(std::span<const int>, std::span<const Vector<3>>, std::span<const Vector<3>>,

@@ -109,6 +109,7 @@ const char* const scheme_keys[] = {"kernel.radius",
                                    "pressure.packing",
                                    "pressure.corrected_divergence",
                                    "pressure.corrected_gradient",
+                                   "pressure.clamp_negative",
                                    "walls.model",
                                    "free_surface.zero_outside",
                                    "shifting.coefficient",
@@ -133,6 +134,7 @@ TEST(Case, TheSchemeSetsDefaults) {
     EXPECT_EQ(c.pressure.packing, consistent);
     EXPECT_EQ(c.pressure.corrected_divergence, consistent);
     EXPECT_EQ(c.pressure.corrected_gradient, consistent);
+    EXPECT_EQ(c.pressure.clamp_negative, !consistent);
     EXPECT_EQ(c.free_surface.zero_outside, consistent);
     EXPECT_EQ(c.shifting.coefficient, !consistent ? 0.0 : c.dimension == 3 ? 3.0 : 1.0);
     EXPECT_EQ(c.shifting.least_distance, consistent ? 0.9 : 0.0);
@@ -694,13 +696,13 @@ TEST(Case, SettingsAreTomlOrBareWords) {
   const Case config =
       parse("", jet_base,
             {"jet.start=steady", "kernel.type = \"singular\"", "fluid.gravity=[0, -9.81]", "output.directory=/tmp/x y",
-             "name=12", "pressure.clamp_negative=false", "plate={begin=-1.0, end=2.0}"});
+             "name=12", "pressure.clamp_negative=true", "plate={begin=-1.0, end=2.0}"});
   EXPECT_EQ(config.jet.start, JetStart::steady);
   EXPECT_EQ(config.kernel.type, KernelType::singular);
   EXPECT_EQ(config.fluid.gravity[1], -9.81);
   EXPECT_EQ(config.output.directory, "/tmp/x y");
   EXPECT_EQ(config.name, "12");
-  EXPECT_FALSE(config.pressure.clamp_negative);
+  EXPECT_TRUE(config.pressure.clamp_negative);
   EXPECT_EQ(config.plate.end, 2.0);
 }
 

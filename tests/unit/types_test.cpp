@@ -3,6 +3,7 @@
 #include <random>
 
 #include "dimensions.hpp"
+#include "impinge/core/table.hpp"
 #include "impinge/core/vector.hpp"
 #include "impinge/particles/cell_grid.hpp"
 
@@ -57,6 +58,38 @@ TYPED_TEST(Types, AProductOfVectorsMapsAlongTheFirst) {
   auto sum = m;
   sum.add_product(a, b);
   EXPECT_NEAR(norm(sum * v - (m * v + dot(b, v) * a)), 0.0, 1e-15);
+}
+
+TYPED_TEST(Types, ABoxHoldsItsSurfaceAndAMargin) {
+  constexpr int dim = TestFixture::Dim;
+  Box<dim> box;
+  for (int k = 0; k < dim; ++k) box.high[k] = 1.0 + k;
+  EXPECT_TRUE(box.contains(box.low));
+  EXPECT_TRUE(box.contains(box.high));
+  for (int k = 0; k < dim; ++k) {
+    for (const double beyond : {-0.1, 1.1 + k}) {
+      Vector<dim> place = 0.5 * box.high;
+      place[k] = beyond;
+      EXPECT_FALSE(box.contains(place));
+      EXPECT_TRUE(box.contains(place, 0.2));
+    }
+  }
+}
+
+TEST(PlaceInTable, IsFoundForEveryValue) {
+  const std::vector<double> table{1.0, 2.0, 4.0};
+  const auto is = [&](double value, std::size_t before, std::size_t after, double share) {
+    const TablePlace place = place_in(table, value);
+    EXPECT_EQ(place.before, before) << value;
+    EXPECT_EQ(place.after, after) << value;
+    EXPECT_DOUBLE_EQ(place.share, share) << value;
+  };
+  is(0.5, 0, 0, 0.0);
+  is(1.0, 0, 1, 0.0);
+  is(3.5, 1, 2, 0.75);
+  is(4.0, 2, 2, 0.0);
+  is(9.0, 2, 2, 0.0);
+  EXPECT_EQ(place_in(std::vector<double>{3.0}, 5.0).before, 0u);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ struct PressureSettings {
   bool packing{};               ///< density errors by the packing around, not by the number density; by scheme
   bool corrected_gradient{};    ///< gradient exact on linear pressures; by scheme
   double tolerance = 1e-6;      ///< relative residual of the PPE solve
-  bool clamp_negative = true;   ///< set negative pressures to zero after the solve
+  bool clamp_negative = false;  ///< set negative pressures to zero after the solve
 };
 
 struct WallSettings {

@@ -89,7 +89,7 @@ class Simulation {
   void migrate();
   void count_strays(const Strays& strays);
   void find_neighbours();
-  void solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed);
+  void solve_pressure(const MotionRule& rule, const BodyForce<Dim>& force, double speed, double fall_speed);
   void correct(const MotionRule& rule, double flow_speed, double fall_speed);
   void measure_totals();
 

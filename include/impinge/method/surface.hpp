@@ -57,12 +57,12 @@ double surface_flatness(const PairList& near, std::span<const Vector<Dim>> asymm
 /// True where a surface particle is in the row of particle i.
 bool is_beside_surface(const PairList& near, std::span<const std::uint8_t> free_surface, int i);
 
-/// Calm of the fluid around particle i [1/2, 1]: 1 where no neighbour's velocity is off the linear field around the
-/// particle by more than 0.05 fall speeds, 1/2 from 0.2 on, linear between. `slope`: of the velocity [1/s];
-/// `fall_speed` [m/s].
+/// Disorder of the motion around particle i [0, 1]: 0 where no neighbour's velocity is off the linear field around the
+/// particle by more than 0.05 fall speeds, 1 from 0.2 on, linear between. `slope`: of the velocity [1/s]; `fall_speed`
+/// [m/s].
 template <int Dim>
-double surface_calm(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
-                    const Matrix<Dim>& slope, double fall_speed, int i);
+double disorder(const PairList& near, std::span<const Vector<Dim>> position, std::span<const Vector<Dim>> velocity,
+                const Matrix<Dim>& slope, double fall_speed, int i);
 
 /// Unit normal of the free surface at particle i, out of the fluid, from the asymmetries of the surface particles among
 /// it and its neighbours, weighted; zero without any.

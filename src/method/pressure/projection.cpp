@@ -11,6 +11,7 @@ namespace impinge {
 
 constexpr int crowding_passes = 2;  // of means over neighbours
 constexpr int layer_passes = 3;     // likewise
+constexpr double least_calm = 0.5;  // at a surface in disordered motion; still less would only make it noisier
 
 template <int Dim>
 Projection<Dim>::Projection(MPI_Comm comm, const MethodSettings& settings, const CellGrid<Dim>& cells)
@@ -54,11 +55,31 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
     report = try_solve(source, state, report.iterations);
   }
   if (!report.failure.empty()) return report;
-  if (settings_.pressure.clamp_negative)
-    for (std::size_t i = 0; i < state.owned(); ++i)
-      state.particles.pressure[i] = std::max(state.particles.pressure[i], 0.0);
+  limit_suction(step.fall_speed, state);
   share_pressure(state);
   return report;
+}
+
+// Fluid that is whole may be under tension. It tears where its surface is rough or its motion disordered.
+template <int Dim>
+void Projection<Dim>::limit_suction(double fall_speed, State<Dim>& state) const {
+  for (std::size_t i = 0; i < state.owned(); ++i) {
+    double& pressure = state.particles.pressure[i];
+    if (pressure >= 0.0) continue;
+    const auto self = static_cast<int>(i);
+    if (settings_.pressure.clamp_negative) {
+      pressure = 0.0;
+    } else if (meets_air(state, self)) {
+      pressure *= (1.0 - disorder_around(state, fall_speed, self)) *
+                  surface_flatness<Dim>(state.near(), state.asymmetry, state.particles.free_surface, self);
+    }
+  }
+}
+
+template <int Dim>
+bool Projection<Dim>::meets_air(const State<Dim>& state, int i) const {
+  const std::vector<std::uint8_t>& free_surface = state.particles.free_surface;
+  return free_surface[static_cast<std::size_t>(i)] || is_beside_surface(state.near(), free_surface, i);
 }
 
 // Of a single particle it tells of disorder, of several around it of the flow.
@@ -220,17 +241,22 @@ PressureReport Projection<Dim>::try_solve(std::span<const double> source, State<
   return solver_.solve(state.particles.pressure);
 }
 
-// To halo and images; wall particles that measure take the mean around them.
+// To halo and images; wall particles that measure take the mean around them. Air gets between a wall and the fluid
+// beside the free surface: no wall pulls there.
 template <int Dim>
 void Projection<Dim>::share_pressure(State<Dim>& state) const {
   std::vector<double>& pressure = state.particles.pressure;
   state.refresh(pressure);
-  if (!image_offset_.empty())
-    state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t) {
-      pressure[at] += image_offset_[image];
-      if (settings_.pressure.clamp_negative) pressure[at] = std::max(pressure[at], 0.0);
-    });
-  if (settings_.walls.model != WallModel::mirror) return;
+  if (settings_.walls.model != WallModel::mirror || state.walls.empty()) return;
+  std::vector<std::uint8_t> lets_go(pressure.size(), settings_.pressure.clamp_negative ? 1 : 0);
+  if (!settings_.pressure.clamp_negative) {
+    for (std::size_t i = 0; i < state.owned(); ++i) lets_go[i] = meets_air(state, static_cast<int>(i));
+    state.decomposition.halo().refresh(lets_go, state.particles.owned);
+  }
+  state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
+    if (!image_offset_.empty()) pressure[at] += image_offset_[image];
+    if (lets_go[from]) pressure[at] = std::max(pressure[at], 0.0);
+  });
   for (std::size_t i = 0; i < state.owned(); ++i)
     if (state.particles.type[i] == ParticleType::wall)
       pressure[i] = weighted_mean(state.near(), pressure, static_cast<int>(i));
@@ -274,7 +300,8 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed
   // In three dimensions jets are better without the curvature. Beyond `most`, which a film half a spacing thicker than
   // the depth would have, it is noise.
   const double depth = layer_[self] * settings_.particles.spacing;
-  const double most = Dim == 2 ? 2.0 * particles.pressure[self] / (depth * (depth + settings_.particles.spacing)) : 0.0;
+  const double most =
+      Dim == 2 ? 2.0 * std::abs(particles.pressure[self]) / (depth * (depth + settings_.particles.spacing)) : 0.0;
   const std::optional<Vector<Dim>> even = surface_gradient<Dim>(
       near, particles.position, particles.pressure, normal, depth, std::clamp(curvature_[self], -most, most), n0, i);
   if (!even) return pushing();
@@ -284,10 +311,15 @@ Vector<Dim> Projection<Dim>::gradient(const State<Dim>& state, double fall_speed
 
 template <int Dim>
 double Projection<Dim>::calm(const State<Dim>& state, double fall_speed, int i) const {
-  if (fall_speed == 0.0) return 1.0;
+  return 1.0 + (least_calm - 1.0) * disorder_around(state, fall_speed, i);
+}
+
+template <int Dim>
+double Projection<Dim>::disorder_around(const State<Dim>& state, double fall_speed, int i) const {
+  if (fall_speed == 0.0) return 0.0;
   const Particles<Dim>& particles = state.particles;
-  return surface_calm<Dim>(state.near(), particles.position, particles.velocity, slope_of_velocity(state, i),
-                           fall_speed, i);
+  return disorder<Dim>(state.near(), particles.position, particles.velocity, slope_of_velocity(state, i), fall_speed,
+                       i);
 }
 
 template <int Dim>

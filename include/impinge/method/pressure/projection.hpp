@@ -25,9 +25,10 @@ class Projection {
 
   /// What a step's sources depend on besides the particles.
   struct Step {
-    double dt;     ///< [s]
-    double after;  ///< time that particles move with the new velocity from their places now [s]
-    double speed;  ///< that the rate at which density errors are corrected refers to [m/s]
+    double dt;          ///< [s]
+    double after;       ///< time that particles move with the new velocity from their places now [s]
+    double speed;       ///< that the rate at which density errors are corrected refers to [m/s]
+    double fall_speed;  ///< sqrt(|g| dp), g the apparent body force [m/s]
   };
 
   /// Solves for the pressures of all particles. A solve that fails is repeated from zero with a new preconditioner;
@@ -35,8 +36,8 @@ class Projection {
   PressureReport solve(const Step& step, const BodyForce<Dim>& force, State<Dim>& state, int last_iterations,
                        int& cold_solves);
 
-  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: sqrt(|g| dp), g the apparent body force [m/s].
-  /// Not collective.
+  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: see Step [m/s]. Not
+  /// collective.
   std::vector<Vector<Dim>> velocity_change(double dt, double fall_speed, const State<Dim>& state) const;
 
   /// Makes the next solve a cold one: it starts from zero and with a new coarse matrix. Not collective.
@@ -74,9 +75,12 @@ class Projection {
   void smooth(const State<Dim>& state, std::vector<double>& field) const;
   PressureEquation::Row row(const State<Dim>& state, int i, const PairRow& far) const;
   PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
+  void limit_suction(double fall_speed, State<Dim>& state) const;
+  bool meets_air(const State<Dim>& state, int i) const;
   void share_pressure(State<Dim>& state) const;
   Vector<Dim> gradient(const State<Dim>& state, double fall_speed, int i) const;
   double calm(const State<Dim>& state, double fall_speed, int i) const;
+  double disorder_around(const State<Dim>& state, double fall_speed, int i) const;
 
   const MethodSettings& settings_;
   LatticeSums near_sums_;    // of the number density's radius
