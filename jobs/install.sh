@@ -18,7 +18,7 @@ packages=(
   file
 )
 tools=(clang-16 libclang-rt-16-dev llvm valgrind libc6-dbg chromium chromium-driver python3-selenium ffmpeg)
-peers=(openfoam)
+peers=(openfoam python3-scipy)
 
 if [ "${1:-}" = --tools ]; then
   packages+=("${tools[@]}")

@@ -97,6 +97,7 @@ class ExactJet:
 
 def timed(command, directory, log):
     """User and system time of a command [s]."""
+    os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")  # where Debian's OpenFOAM has its settings
     with open(log, "w") as out:
         process = subprocess.Popen(command, cwd=directory, stdout=out, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(process.pid, 0)
@@ -127,7 +128,7 @@ def run_impinge(programs, directory, angle, n):
                 f"output.interval={(END - START) / (SNAPSHOTS - 1)}", f"output.average_start={START}",
                 f"output.directory={directory}"]
     command = [programs / "impinge", "input/jet.toml", *(word for one in settings for word in ("--set", one))]
-    cpu = timed(command, ".", directory.with_suffix(".log"))
+    cpu = timed(command, ".", directory.with_name(directory.name + ".log"))
     subprocess.run([programs / "impinge-validate", directory], check=True, stdout=subprocess.DEVNULL)
     run = impinge.Run(directory)
     frame, profile = run.validation, run.validation.wall_pressure
@@ -137,7 +138,7 @@ def run_impinge(programs, directory, angle, n):
     for step, time in zip(run.steps, run.times):
         if time > START - 1e-9:
             state = run.snapshot(step=step)
-            snapshots.append((frame.to_frame(state.position)[state.fluid], state.pressure[state.fluid]))
+            snapshots.append((frame.to_frame(state.position[state.fluid, :2]), state.pressure[state.fluid]))
     return cpu, (x[order], np.gradient(x[order]), pressure[order]), snapshots
 
 
@@ -269,7 +270,7 @@ def run_foam(directory, exact, angle, n, settings):
 
 def result(programs, root, program, angle, n):
     directory = root / f"{re.sub('[^a-zA-Z0-9.]+', '-', program)}-{angle:g}-{n}"
-    known = directory.with_suffix(".json")
+    known = directory.with_name(directory.name + ".json")
     if known.exists():
         return json.loads(known.read_text())
     print(f"== {directory}", file=sys.stderr, flush=True)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the plane jet by Impinge and by OpenFOAM's interFoam, one core each, one after the other, and measures both alike:
-# accuracy against CPU time. Installs Debian's openfoam where it is missing (900 MB).
+# accuracy against CPU time. Installs Debian's openfoam where it is missing (150 MB, with its libraries).
 # Usage: jobs/peers.sh [H/DX...]
 #   H/DX   particles or cells across the jet; default 10 20 40 (20 minutes)
 # Variables: ANGLES (default "60,30").

@@ -84,7 +84,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add(
       "pressure.clamp_negative", s.pressure.clamp_negative,
       "set negative pressures to zero after the solve; false: only where fluid tears, beside a free surface that is "
-      "rough or in disordered motion, and at walls beside a free surface");
+      "rough or in disordered motion, or by a wall");
 
   keys.add("walls.model", s.walls.model,
            "mirror: the fluid's mirror images; particles: wall particles, and ghosts without a pressure",

@@ -60,20 +60,27 @@ PressureReport Projection<Dim>::solve(const Step& step, const BodyForce<Dim>& fo
   return report;
 }
 
-// Fluid that is whole may be under tension. It tears where its surface is rough or its motion disordered.
+// Fluid that is whole may be under tension. It tears where its surface is rough or its motion disordered. Beside both
+// surface and wall there is none: air gets in between.
 template <int Dim>
 void Projection<Dim>::limit_suction(double fall_speed, State<Dim>& state) const {
   for (std::size_t i = 0; i < state.owned(); ++i) {
     double& pressure = state.particles.pressure[i];
     if (pressure >= 0.0) continue;
     const auto self = static_cast<int>(i);
-    if (settings_.pressure.clamp_negative) {
+    if (settings_.pressure.clamp_negative || (meets_air(state, self) && sees_images(state, self))) {
       pressure = 0.0;
     } else if (meets_air(state, self)) {
       pressure *= (1.0 - disorder_around(state, fall_speed, self)) *
                   surface_flatness<Dim>(state.near(), state.asymmetry, state.particles.free_surface, self);
     }
   }
+}
+
+template <int Dim>
+bool Projection<Dim>::sees_images(const State<Dim>& state, int i) const {
+  return !state.walls.empty() &&
+         std::ranges::any_of(state.near().row(i), [&](int j) { return j >= state.walls.first_image(); });
 }
 
 template <int Dim>

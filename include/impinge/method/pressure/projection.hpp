@@ -77,6 +77,7 @@ class Projection {
   PressureReport try_solve(std::span<const double> source, State<Dim>& state, int last_iterations);
   void limit_suction(double fall_speed, State<Dim>& state) const;
   bool meets_air(const State<Dim>& state, int i) const;
+  bool sees_images(const State<Dim>& state, int i) const;
   void share_pressure(State<Dim>& state) const;
   Vector<Dim> gradient(const State<Dim>& state, double fall_speed, int i) const;
   double calm(const State<Dim>& state, double fall_speed, int i) const;
