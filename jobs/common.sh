@@ -23,6 +23,15 @@ run_mpi() {
   mpirun --oversubscribe -n "$ranks" "$@"
 }
 
+# resolutions_of DEFAULTS [WORD...]: the words, or the defaults without any, as the array resolutions; fails where one is
+# no count.
+resolutions_of() {
+  local defaults=$1 word
+  shift
+  read -ra resolutions <<<"${*:-$defaults}"
+  for word in "${resolutions[@]}"; do [[ $word =~ ^[1-9][0-9]*$ ]] || return 1; done
+}
+
 # quotient A B: A / B, to 15 digits
 quotient() { awk "BEGIN {printf \"%.15g\", $1 / $2}"; }
 

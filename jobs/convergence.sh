@@ -12,14 +12,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . jobs/common.sh
 
-resolutions=("$@")
-[ $# -gt 0 ] || resolutions=(20 40 80)
-for resolution in "${resolutions[@]}"; do
-  if ! [[ $resolution =~ ^[1-9][0-9]*$ ]]; then
-    sed -n '2,12s/^# //p' "$0" >&2
-    exit 2
-  fi
-done
+resolutions_of "20 40 80" "$@" || {
+  sed -n '2,12s/^# //p' "$0" >&2
+  exit 2
+}
 set_up
 
 root=output/convergence

@@ -9,14 +9,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . jobs/common.sh
 
-resolutions=("$@")
-[ $# -gt 0 ] || resolutions=(10 20 40)
-for resolution in "${resolutions[@]}"; do
-  if ! [[ $resolution =~ ^[1-9][0-9]*$ ]]; then
-    sed -n '2,8s/^# //p' "$0" >&2
-    exit 2
-  fi
-done
+resolutions_of "10 20 40" "$@" || {
+  sed -n '2,8s/^# //p' "$0" >&2
+  exit 2
+}
 set_up
 jobs/install.sh --peers
 

@@ -88,16 +88,21 @@ gradient = [1, 0, 0, -1]
   EXPECT_LT(std::abs(pressure_error), 0.1);  // +6.6 %
 }
 
-TEST(Drop, ThatSpinsKeepsItsAngularMomentum) {
-  const Case config = parse_case({{"square.toml", R"(geometry = "scene"
-particles.spacing = 0.05
-time = {end = 0.5, dt = 5e-3}
+/// A square of edge 1 m that turns at 1/s.
+Case spinning_square(double spacing, double end) {
+  return parse_case({{"square.toml", R"(geometry = "scene"
+time.dt = 5e-3
 [[fluid.region]]
 shape = "box"
 low = [-0.5, -0.5]
 high = [0.5, 0.5]
 spin = 1
-)"}});
+)"}},
+                    {fmt::format("particles.spacing={}", spacing), fmt::format("time.end={}", end)});
+}
+
+TEST(Drop, ThatSpinsKeepsItsAngularMomentum) {
+  const Case config = spinning_square(0.05, 0.5);
   auto simulation = make_simulation<2>(comm, config);
   const Particles<2>& particles = simulation.particles();
   const auto angular_momentum = [&] {
@@ -126,15 +131,7 @@ spin = 1
 // Its middle is under tension: -0.13296 rho omega^2 L^2 at omega t = 1/2, by a potential flow with uniform vorticity,
 // fitted on the surface and followed by Runge-Kutta steps. Around it the pressure rises by rho omega^2 r^2/2.
 TEST(Drop, ThatSpinsIsHeldTogetherBySuction) {
-  const Case config = parse_case({{"square.toml", R"(geometry = "scene"
-particles.spacing = 0.025
-time = {end = 0.55, dt = 5e-3}
-[[fluid.region]]
-shape = "box"
-low = [-0.5, -0.5]
-high = [0.5, 0.5]
-spin = 1
-)"}});
+  const Case config = spinning_square(0.025, 0.55);
   auto simulation = make_simulation<2>(comm, config);
   const Particles<2>& particles = simulation.particles();
   const double rho = config.fluid.density, kinetic = simulation.report().kinetic_energy;
