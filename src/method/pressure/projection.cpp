@@ -257,7 +257,9 @@ void Projection<Dim>::share_pressure(State<Dim>& state) const {
   if (settings_.walls.model != WallModel::mirror || state.walls.empty()) return;
   std::vector<std::uint8_t> lets_go(pressure.size(), settings_.pressure.clamp_negative ? 1 : 0);
   if (!settings_.pressure.clamp_negative) {
-    for (std::size_t i = 0; i < state.owned(); ++i) lets_go[i] = meets_air(state, static_cast<int>(i));
+    for (std::size_t i = 0; i < state.owned(); ++i)
+      lets_go[i] =
+          !state.walls.faces().around(state.particles.position[i]).empty() && meets_air(state, static_cast<int>(i));
     state.decomposition.halo().refresh(lets_go, state.particles.owned);
   }
   state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
