@@ -10,7 +10,7 @@ t = 0. The measures are means over t = 4..5 s:
   wall   relative L2 error of the mean wall pressure where the exact one is above 0.001 rho U^2/2
   force  of the mean wall pressure, over rho U^2 H sin(angle)
   field  relative L2 error of the pressure in 11 snapshots, over the particles or cells in the exact jet that are deeper
-         than dx/2 below its surface, -2 H < x < 4 H from the stagnation point
+         than dx/2 below its surface, -2 H < x < 4 H from the stagnation point and nearer than 3 H to the plate
   CPU    user and system time of the run on one core, start and output included
 Prints a table (Markdown) and draws DIR/peers.png.
 """
@@ -97,7 +97,6 @@ class ExactJet:
 
 def timed(command, directory, log):
     """User and system time of a command [s]."""
-    os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")  # where Debian's OpenFOAM has its settings
     with open(log, "w") as out:
         process = subprocess.Popen(command, cwd=directory, stdout=out, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(process.pid, 0)
@@ -253,6 +252,7 @@ def foam_numbers(path, patch=None):
 
 
 def run_foam(directory, exact, angle, n, settings):
+    os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")  # where Debian's OpenFOAM has its settings
     make_foam_case(directory, exact, angle, n, **settings)
     for program in ("blockMesh", "setFields"):
         timed([program], directory, directory / f"{program}.log")

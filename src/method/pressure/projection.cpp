@@ -68,9 +68,10 @@ void Projection<Dim>::limit_suction(double fall_speed, State<Dim>& state) const 
     double& pressure = state.particles.pressure[i];
     if (pressure >= 0.0) continue;
     const auto self = static_cast<int>(i);
-    if (settings_.pressure.clamp_negative || (meets_air(state, self) && sees_images(state, self))) {
+    if (!settings_.pressure.clamp_negative && !meets_air(state, self)) continue;
+    if (settings_.pressure.clamp_negative || sees_images(state, self)) {
       pressure = 0.0;
-    } else if (meets_air(state, self)) {
+    } else {
       pressure *= (1.0 - disorder_around(state, fall_speed, self)) *
                   surface_flatness<Dim>(state.near(), state.asymmetry, state.particles.free_surface, self);
     }

@@ -36,8 +36,7 @@ class Projection {
   PressureReport solve(const Step& step, const BodyForce<Dim>& force, State<Dim>& state, int last_iterations,
                        int& cold_solves);
 
-  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: see Step [m/s]. Not
-  /// collective.
+  /// -dt/rho grad p of the owned fluid particles [m/s]. `fall_speed`: see Step [m/s]. Not collective.
   std::vector<Vector<Dim>> velocity_change(double dt, double fall_speed, const State<Dim>& state) const;
 
   /// Makes the next solve a cold one: it starts from zero and with a new coarse matrix. Not collective.
