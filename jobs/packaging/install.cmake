@@ -13,10 +13,10 @@ install(PROGRAMS ${python_programs} TYPE BIN)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ TYPE MAN)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion TYPE DATA)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/zsh/site-functions/ DESTINATION ${IMPINGE_ZSH_DIRECTORY})
-install(FILES ${schema} src/programs/impinge.py src/programs/impinge_space.py src/programs/impinge_paraview.py
-              src/programs/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/impinge)
+install(FILES ${schema} src/programs/impinge.py src/programs/impinge_space.py src/programs/impinge_compare.py
+              src/programs/impinge_paraview.py src/programs/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/impinge)
 if(IMPINGE_PYTHON_DIRECTORY)
-  foreach(name impinge.py impinge_space.py)
+  foreach(name impinge.py impinge_space.py impinge_compare.py)
     file(RELATIVE_PATH module /${IMPINGE_PYTHON_DIRECTORY} /${CMAKE_INSTALL_DATADIR}/impinge/${name})
     file(CREATE_LINK ${module} ${PROJECT_BINARY_DIR}/${name} SYMBOLIC)
     install(FILES ${PROJECT_BINARY_DIR}/${name} DESTINATION ${IMPINGE_PYTHON_DIRECTORY})

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Measures Impinge against exact solutions and experiments: runs cases of input/ on one core each, as many at a time as
+# there are cores, compares them by their compare.py, prints one table and makes a page of tables and pictures.
+# Usage: jobs/experiments.sh [CASE...] [--fine]
+#   CASE    folders below input/ with a compare.py, default all
+#   --fine  also the resolutions that docs/results/experiments.md shows (hours); default: ten minutes on two cores
+# Output: output/experiments/<case>/<run>/ and page.md beside them; with --fine the page docs/results/experiments.md and the
+# figures of the cases. A page keeps the cases that are not measured again, and a run that is finished is not run again.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. jobs/common.sh
+
+# The table of all runs, each a call of `run` with LEVEL CASE RUN [KEY=VALUE...]: coarse or fine, the folder below input/,
+# the name of the run's directory, and what is set over the case file. A case's last run is its finest.
+table_of_runs() {
+  run coarse rotating-square 100
+  run fine rotating-square 200 particles.spacing=0.005 time.dt=1.5e-3
+}
+
+root=output/experiments
+fine=no
+chosen=()
+for word in "$@"; do
+  case $word in
+    --fine) fine=yes ;;
+    *)
+      [ -f "input/$word/compare.py" ] || { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
+      chosen+=("$word")
+      ;;
+  esac
+done
+set_up
+
+# compute CASE RUN [KEY=VALUE...]: one run, its CPU time in cpu_seconds beside it. A run that diverges is a result, too.
+compute() {
+  local case=$1 directory=$root/$1/$2 words=() code=0
+  shift 2
+  [ ! -f "$directory/cpu_seconds" ] || return 0
+  for setting in "$@"; do words+=(--set "$setting"); done
+  mkdir -p "$directory"
+  echo "== $directory"
+  local TIMEFORMAT='%U %S'
+  { time run_mpi 1 "$bin/impinge" "input/$case/$case.toml" "${words[@]}" --set "output.directory=$directory" \
+    >"$directory/run.log" 2>&1; } 2>"$directory/time" || code=$?
+  [ $code -eq 0 ] || [ $code -eq 3 ] || { cat "$directory/run.log" >&2; return $code; }
+  awk '{print $1 + $2}' "$directory/time" >"$directory/cpu_seconds"
+}
+
+# The runs that are chosen, in the table's order.
+runs=()
+pids=()
+run() {
+  local level=$1
+  shift
+  [ "$level" = coarse ] || [ $fine = yes ] || return 0
+  [ ${#chosen[@]} -eq 0 ] || [[ " ${chosen[*]} " == *" $1 "* ]] || return 0
+  while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do sleep 0.2; done
+  compute "$@" &
+  pids+=($!)
+  runs+=("$1/$2")
+}
+table_of_runs
+for pid in "${pids[@]}"; do wait "$pid"; done
+
+page=$root/page.md
+[ $fine = no ] || page=docs/results/experiments.md
+/usr/bin/python3 jobs/experiments.py "$root" "$page" "${runs[@]}"
