@@ -13,8 +13,33 @@ cd "$(dirname "$0")/.."
 # The table of all runs, each a call of `run` with LEVEL CASE RUN [KEY=VALUE...]: coarse or fine, the folder below input/,
 # the name of the run's directory, and what is set over the case file. A case's last run is its finest.
 table_of_runs() {
+  local level n ratio
   run coarse rotating-square 100
   run fine rotating-square 200 particles.spacing=0.005 time.dt=1.5e-3
+
+  for n in 20 40 80; do
+    level=$([ $n = 20 ] && echo coarse || echo fine)
+    [ $n = 80 ] || run $level drop $n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.2 $n)" time.end=45.67374 \
+      output.interval=0.2283687
+    run $level drop no-force-$n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.1 $n)" time.end=0.8 \
+      output.interval=0.02 fluid.central_force=0 'fluid.region[1].gradient=[1, 0, 0, -1]'
+  done
+
+  for n in 80 160; do
+    level=$([ $n = 80 ] && echo coarse || echo fine)
+    for ratio in 0.5 1 2 4; do
+      run $level block $ratio-$n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.1 $n)" "time.end=$(quotient 2 $n)" \
+        "fluid.region[1].high=[0.5, $(quotient 1 $ratio)]" "fluid.region[1].translate=[0, $(quotient 1.5 $n)]"
+    done
+  done
+
+  for n in 40 80; do
+    level=$([ $n = 40 ] && echo coarse || echo fine)
+    for ratio in 2 1 0.5; do
+      run $level dam-break-start $ratio-$n "particles.spacing=$(quotient 0.5 $n)" \
+        "fluid.region[1].high=[$(quotient $ratio 2), 0.5]" "probe[2].position=[$(quotient $ratio 4), 0]"
+    done
+  done
 }
 
 root=output/experiments
