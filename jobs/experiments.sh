@@ -40,6 +40,22 @@ table_of_runs() {
         "fluid.region[1].high=[$(quotient $ratio 2), 0.5]" "probe[2].position=[$(quotient $ratio 4), 0]"
     done
   done
+
+  for n in 30 60; do
+    level=$([ $n = 30 ] && echo coarse || echo fine)
+    run $level standing-wave $n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.12 $n)"
+    run $level standing-wave viscous-$n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.12 $n)" \
+      fluid.viscosity=0.0125284 time.end=6.4
+    run $level sway $n "particles.spacing=$(quotient 0.5 $n)" "time.dt=$(quotient 0.12 $n)"
+  done
+
+  for n in 20 40; do
+    level=$([ $n = 20 ] && echo coarse || echo fine)
+    run $level wave-maker piston-$n "particles.spacing=$(quotient 0.4 $n)" "time.dt=$(quotient 0.1 $n)"
+    run $level wave-maker flap-$n "particles.spacing=$(quotient 0.4 $n)" "time.dt=$(quotient 0.1 $n)" \
+      'motion[1].amplitude=[0, 0]' 'motion[1].angle=-2.8624'
+    run $level solitary-wave $n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.16 $n)"
+  done
 }
 
 root=output/experiments

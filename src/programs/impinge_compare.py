@@ -48,7 +48,7 @@ def row(metric, measured, reference=None, scale=None, beat="", source=EXACT):
     if reference is not None:
         nearest = np.clip(measured, *reference) if isinstance(reference, tuple) else reference
         error = float((measured - nearest) / (scale or abs(nearest)))
-    return Row(metric, measured, reference, error, beat, source)
+    return Row(metric, measured, reference, error, beat, source if reference is not None else "")
 
 
 def cell(value):
