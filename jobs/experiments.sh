@@ -56,6 +56,21 @@ table_of_runs() {
       'motion[1].amplitude=[0, 0]' 'motion[1].angle=-2.8624'
     run $level solitary-wave $n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.16 $n)"
   done
+
+  # Five runs that differ by chance.
+  for n in 30 60; do
+    level=$([ $n = 30 ] && echo coarse || echo fine)
+    for step in 1 0.99 0.98 0.97 0.96; do
+      run $level dam-break $n-$step "particles.spacing=$(quotient 0.3 $n)" "time.dt=$(quotient "$step" $((n * 100 / 3)))"
+    done
+  done
+  for n in 20 40; do
+    level=$([ $n = 20 ] && echo coarse || echo fine)
+    run $level martin-moyce $n "particles.spacing=$(quotient 0.05715 $n)" "time.dt=$(quotient 0.01 $n)"
+    run $level martin-moyce $n-square "particles.spacing=$(quotient 0.05715 $n)" "time.dt=$(quotient 0.01 $n)" \
+      'fluid.region[1].high=[0.05715, 0.05715]'
+    run $level koshizuka-oka $n "particles.spacing=$(quotient 0.146 $n)" "time.dt=$(quotient 0.02 $n)"
+  done
 }
 
 root=output/experiments
