@@ -71,6 +71,19 @@ table_of_runs() {
       'fluid.region[1].high=[0.05715, 0.05715]'
     run $level koshizuka-oka $n "particles.spacing=$(quotient 0.146 $n)" "time.dt=$(quotient 0.02 $n)"
   done
+
+  run coarse sloshing-impact 15
+  run fine sloshing-impact 23 particles.spacing=0.004 time.dt=1.5e-3
+  run coarse swaying-tank 20
+  run fine swaying-tank 40 particles.spacing=0.015 time.dt=2e-3
+  run coarse ciem-flume 20
+  run coarse slow-jet 10
+  run fine slow-jet 50 particles.spacing=0.002 time.end=2.0 output.average_start=1.0
+  run coarse violent-sloshing 15
+  run coarse dam-break-box 15
+  run fine dam-break-box 20 particles.spacing=0.0275 time.dt=3e-3
+  run fine shallow-bore 8 particles.spacing=3.75e-3
+  run fine bore-on-column 6
 }
 
 root=output/experiments
