@@ -41,9 +41,13 @@ bool measure_totals(MPI_Comm comm, const MethodSettings& settings, const Particl
 
 template <int Dim>
 void average_wall_pressure(const StepReport& report, AveragingWindow& window, Particles<Dim>& particles) {
+  const double before = report.time - report.dt;
+  if (before - window.end > 0.5 * report.dt) {  // none yet, or a restart that averages from a later time on
+    std::ranges::fill(particles.pressure_impulse, 0.0);
+    window.begin = before;
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i)
     if (particles.type[i] == ParticleType::wall) particles.pressure_impulse[i] += report.dt * particles.pressure[i];
-  if (window.end == 0.0) window.begin = report.time - report.dt;
   window.end = report.time;
 }
 

@@ -39,7 +39,9 @@ RoundJetComparison::RoundJetComparison(const JetTarget& target)
     rings_.push_back({begin, begin + width});
 }
 
-double RoundJetComparison::force() const { return jet_.force() * std::sin(target_.angle); }
+double RoundJetComparison::force() const {
+  return jet_.force() * (std::sin(target_.angle) - target_.space->force_beyond);
+}
 
 void RoundJetComparison::set_wall_average(const Particles<3>& particles, double duration) {
   map_.clear();
@@ -174,8 +176,10 @@ JetMetrics RoundJetComparison::metrics() const {
       near_reference += exact;
     }
     const double foot = is_perpendicular(target_) ? 0.0 : radius_ / std::tan(target_.angle);
+    const double centre =
+        (foot * std::sin(target_.angle) - target_.space->moment_beyond) / (this->force() / jet_.force());
     metrics.force_ratio = if_finite(force / this->force());
-    metrics.centre_x = if_finite((x / force - foot) / target_.width);
+    metrics.centre_x = if_finite((x / force - centre) / target_.width);
     metrics.centre_y = if_finite(y / force / target_.width);
     if (is_perpendicular(target_)) {
       metrics.wall_l2 = if_finite(std::sqrt(error / reference));

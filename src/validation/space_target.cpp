@@ -199,6 +199,10 @@ class SpaceTargetSearch {
                         angle * 180.0 / pi, longest / target_.width, azimuth * 180.0 / pi,
                         0.5 * large * footprint(angle, azimuth)));
       reaches.push_back(longest);
+      const double film = radius * radius * film_law(angle, azimuth), turn = 2.0 * pi / azimuths;
+      const double beyond = film * film / (radius * radius * pi) * turn;
+      space.force_beyond += beyond / (2.0 * longest * longest);
+      space.moment_beyond += beyond * std::cos(azimuth) / longest;
     }
     space.reach = std::ranges::min(reaches);
     target_.end = reaches.front();

@@ -48,6 +48,9 @@ struct SpacePlate {
   Vector<3> z;         ///< into the fluid [-]
   double depth = 0.0;  ///< of a slot jet, along y [m]; 0 of a round jet
   double reach = 0.0;  ///< radius of the largest disc around the origin that the wall holds [m]
+  /// What of a round jet's force lies beyond the wall's ends, where the film of film_law sinks on and presses with
+  /// rho U^2 (h/r)^2: over rho U^2 A [-], and its moment along x about the origin over rho U^2 A [m].
+  double force_beyond = 0.0, moment_beyond = 0.0;
   std::unordered_map<std::int64_t, Point> points{};  ///< by the ids of the wall particles
 
   Vector<3> of_direction(const Vector<3>& v) const { return {{dot(v, x), dot(v, y), dot(v, z)}}; }

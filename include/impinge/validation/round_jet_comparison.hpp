@@ -26,7 +26,7 @@ struct WallMapPoint {
 ///
 /// At 90 degrees wall pressure and film are those of RoundJet. At other angles exact are the force rho U^2 A sin a, the
 /// centre of pressure at the foot of the jet's axis (by the moment of momentum), the largest pressure, and the film's
-/// flux and momentum; film_law is approximate. With s = r over the distance of the footprint, flux and momentum are
+/// flux and momentum; film_law is approximate. Of force and moment SpacePlate::force_beyond, moment_beyond are taken off. With s = r over the distance of the footprint, flux and momentum are
 /// those through the curves of constant s, in the mean of 2.25 < s < 2.75: the sums of V u.grad(s) and V u_x u.grad(s)
 /// over the particles there, of the volume V = dp^3, over the width of that range.
 class RoundJetComparison {
@@ -53,7 +53,7 @@ class RoundJetComparison {
   /// [rad], beside that of film_law in the middle of the ring. Empty without a snapshot of finite numbers.
   std::vector<FilmColumn> film_profile() const;
 
-  /// Force that JetMetrics::force_ratio refers to, rho U^2 A sin a [N].
+  /// Force that JetMetrics::force_ratio refers to, rho U^2 A (sin a - force_beyond) [N].
   double force() const;
 
  private:
