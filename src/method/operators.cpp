@@ -139,6 +139,21 @@ Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>>
 }
 
 template <int Dim>
+Matrix<Dim> gradient_to_images_left(const PairList& near, std::span<const Vector<Dim>> position,
+                                    std::span<const Vector<Dim>> velocity, const Matrix<Dim>& correction, double n0,
+                                    std::size_t first_image, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  Matrix<Dim> slope;
+  for_pairs(near, i, [&](std::size_t j, double weight) {
+    if (j < first_image) return;
+    const Vector<Dim> offset = position[j] - position[self], relative = velocity[j] - velocity[self];
+    if (dot(relative, offset) > 0.0)
+      slope.add_product(Dim / n0 * relative, weight / dot(offset, offset) * (correction * offset));
+  });
+  return slope;
+}
+
+template <int Dim>
 Vector<Dim> corrected_gradient(const PairList& near, std::span<const Vector<Dim>> position,
                                std::span<const double> pressure, double base, const Matrix<Dim>& correction, double n0,
                                int i) {
@@ -319,6 +334,9 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
   template Matrix<Dim> moment_correction<Dim>(const PairList&, std::span<const Vector<Dim>>, double, int);             \
   template double divergence<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>, double, \
                                   int);                                                                                \
+  template Matrix<Dim> gradient_to_images_left<Dim>(const PairList&, std::span<const Vector<Dim>>,                     \
+                                                    std::span<const Vector<Dim>>, const Matrix<Dim>&, double,          \
+                                                    std::size_t, int);                                                 \
   template Matrix<Dim> velocity_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>,                           \
                                               std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,              \
                                               const Matrix<Dim>&, double, int);                                        \

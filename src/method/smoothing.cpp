@@ -14,10 +14,16 @@ std::vector<Matrix<Dim>> velocity_gradients(double n0, State<Dim>& state) {
   Particles<Dim>& particles = state.particles;
   state.refresh_velocities();
   std::vector<Matrix<Dim>> gradient(state.role.size());
-  for (std::size_t i = 0; i < state.owned(); ++i)
-    if (state.moves(i) && !is_spray(particles, n0, i) && state.correction[i] != Matrix<Dim>{})
-      gradient[i] = velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
-                                           state.correction[i], n0, static_cast<int>(i));
+  for (std::size_t i = 0; i < state.owned(); ++i) {
+    const Matrix<Dim>& correction = state.correction[i];
+    if (!state.moves(i) || is_spray(particles, n0, i) || correction == Matrix<Dim>{}) continue;
+    gradient[i] = velocity_gradient<Dim>(state.near(), particles.position, particles.velocity, state.wall_normal,
+                                         correction, n0, static_cast<int>(i));
+    if (!particles.free_surface[i]) continue;
+    const Matrix<Dim> left = gradient_to_images_left<Dim>(state.near(), particles.position, particles.velocity,
+                                                          correction, n0, gradient.size(), static_cast<int>(i));
+    for (std::size_t k = 0; k < Dim; ++k) gradient[i].row[k] -= left.row[k];
+  }
   state.decomposition.halo().refresh(gradient, particles.owned);
   return gradient;
 }

@@ -384,6 +384,24 @@ TYPED_TEST(Operators, RepulsionPartsFluidThatIsTooNear) {
   EXPECT_EQ(of(0, 0.9), Vector<Dim>{});
 }
 
+TYPED_TEST(Operators, AParticleThatLeavesAWallLeavesItsImageBehind) {
+  constexpr int Dim = TypeParam::value;
+  const double n0 = 4.0;
+  Group<Dim> pair;  // a particle above the plane y = 0, and its image
+  pair.add(0.0, 0.5, 3.0, 2.0);
+  pair.add(0.0, -0.5, 3.0, -2.0);
+  Matrix<Dim> correction = Matrix<Dim>::identity();
+  correction.row[1][1] = 0.7;
+  const auto left = [&](std::size_t first_image) {
+    return gradient_to_images_left<Dim>(pair.pairs(), pair.position, pair.velocity, correction, n0, first_image, 0);
+  };
+  EXPECT_EQ(left(1), velocity_gradient<Dim>(pair.pairs(), pair.position, pair.velocity, {}, correction, n0, 0));
+  EXPECT_NE(left(1), Matrix<Dim>{});
+  EXPECT_EQ(left(2), Matrix<Dim>{});
+  std::swap(pair.velocity[0], pair.velocity[1]);  // towards the wall
+  EXPECT_EQ(left(1), Matrix<Dim>{});
+}
+
 TYPED_TEST(Operators, TheVelocityGradientLetsTheFluidSlipAlongWalls) {
   constexpr int Dim = TypeParam::value;
   const double n0 = 4.0;

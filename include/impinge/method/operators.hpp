@@ -49,6 +49,13 @@ Matrix<Dim> velocity_gradient(const PairList& near, std::span<const Vector<Dim>>
                               std::span<const Vector<Dim>> velocity, std::span<const Vector<Dim>> wall_normal,
                               const Matrix<Dim>& correction, double n0, int i);
 
+/// What the velocity gradient has from images that particle i leaves behind: from its pairs with particles from
+/// `first_image` on that move away from it [1/s]. Where fluid leaves a wall, no fluid is between both.
+template <int Dim>
+Matrix<Dim> gradient_to_images_left(const PairList& near, std::span<const Vector<Dim>> position,
+                                    std::span<const Vector<Dim>> velocity, const Matrix<Dim>& correction, double n0,
+                                    std::size_t first_image, int i);
+
 /// Momentum-conserving pressure gradient Dim/n0 sum (p_j + p_i) r_ij W / r_ij^2 [Pa/m] (10) (paper eq. 4). Ghost
 /// particles carry no pressure and are left out. A wall is smooth: its particles push along the wall's unit normal
 /// only, the pair's component along which is taken; `wall_normal` has an entry for every particle and is read for wall

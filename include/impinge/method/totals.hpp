@@ -23,8 +23,8 @@ struct AveragingWindow {
   double end = 0.0;
 };
 
-/// Adds p dt of a step to the pressure impulse of the wall particles. A step that does not follow on the window begins a
-/// new one. Not collective.
+/// Adds p dt of a step to the pressure impulse of the wall particles. A step that does not follow on the window begins
+/// a new one. Not collective.
 template <int Dim>
 void average_wall_pressure(const StepReport& report, AveragingWindow& window, Particles<Dim>& particles);
 

@@ -26,9 +26,10 @@ struct WallMapPoint {
 ///
 /// At 90 degrees wall pressure and film are those of RoundJet. At other angles exact are the force rho U^2 A sin a, the
 /// centre of pressure at the foot of the jet's axis (by the moment of momentum), the largest pressure, and the film's
-/// flux and momentum; film_law is approximate. Of force and moment SpacePlate::force_beyond, moment_beyond are taken off. With s = r over the distance of the footprint, flux and momentum are
-/// those through the curves of constant s, in the mean of 2.25 < s < 2.75: the sums of V u.grad(s) and V u_x u.grad(s)
-/// over the particles there, of the volume V = dp^3, over the width of that range.
+/// flux and momentum; film_law is approximate. Of force and moment SpacePlate::force_beyond, moment_beyond are taken
+/// off. With s = r over the distance of the footprint, flux and momentum are those through the curves of constant s, in
+/// the mean of 2.25 < s < 2.75: the sums of V u.grad(s) and V u_x u.grad(s) over the particles there, of the volume V =
+/// dp^3, over the width of that range.
 class RoundJetComparison {
  public:
   explicit RoundJetComparison(const JetTarget& target);
