@@ -42,8 +42,9 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
   const FreeSurfaceSettings& limits = settings.free_surface;
   const bool walls_measure = settings.walls.model == WallModel::mirror;
   const PressureSettings& pressure = settings.pressure;
-  const bool corrects =
-      pressure.corrected_divergence || pressure.corrected_gradient || needs_velocity_gradients(settings);
+  const bool corrects = pressure.corrected_divergence || pressure.corrected_gradient ||
+                        needs_velocity_gradients(settings) ||
+                        (settings.fluid.viscosity > 0.0 && settings.fluid.corrected_viscosity);
   const bool needs_all_asymmetries = needs_asymmetry(settings);
   number_density(near, particles.number_density);
   state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);

@@ -6,8 +6,8 @@
 
 namespace impinge {
 template <int Dim>
-void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping, double viscosity,
-                double laplacian_factor, State<Dim>& state) {
+void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping,
+                std::span<const Vector<Dim>> viscous, State<Dim>& state) {
   Particles<Dim>& particles = state.particles;
   std::vector<Vector<Dim>> change(state.owned());
   for (std::size_t i = 0; i < change.size(); ++i)
@@ -15,14 +15,7 @@ void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const Dampi
   if (!damping.empty())
     for (std::size_t i = 0; i < change.size(); ++i)
       change[i] += damping.velocity_change(particles.position[i], particles.velocity[i], rule.dt);
-  if (viscosity > 0.0) {
-    state.decomposition.halo().refresh(particles.velocity, particles.owned);
-    state.walls.copy_held_velocities(particles.position, particles.velocity);
-    state.search.for_far_rows([&](int i, const PairRow& row) {
-      change[static_cast<std::size_t>(i)] +=
-          viscosity * rule.dt * velocity_laplacian<Dim>(row, particles.velocity, laplacian_factor, i);
-    });
-  }
+  for (std::size_t i = 0; i < viscous.size(); ++i) change[i] += viscous[i];
   for (std::size_t i = 0; i < change.size(); ++i) {
     if (!state.moves(i)) continue;
     particles.velocity[i] += change[i];
@@ -56,10 +49,10 @@ void advance(double dt, std::vector<Inlet<Dim>>& inlets, Particles<Dim>& particl
       particles.position[i] += dt * particles.velocity[i];
 }
 
-#define IMPINGE_INSTANTIATE(Dim)                                                                               \
-  template void accelerate(const MotionRule&, const BodyForce<Dim>&, const DampingZones<Dim>&, double, double, \
-                           State<Dim>&);                                                                       \
-  template void collide(const CollisionSettings&, double, double, State<Dim>&);                                \
+#define IMPINGE_INSTANTIATE(Dim)                                                               \
+  template void accelerate(const MotionRule&, const BodyForce<Dim>&, const DampingZones<Dim>&, \
+                           std::span<const Vector<Dim>>, State<Dim>&);                         \
+  template void collide(const CollisionSettings&, double, double, State<Dim>&);                \
   template void advance(double, std::vector<Inlet<Dim>>&, Particles<Dim>&);
 IMPINGE_INSTANTIATE(2)
 IMPINGE_INSTANTIATE(3)

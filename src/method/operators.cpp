@@ -305,6 +305,21 @@ Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> 
 }
 
 template <int Dim>
+ViscousSums<Dim> viscous_sums(const PairRow& far, std::span<const Vector<Dim>> position,
+                              std::span<const Vector<Dim>> velocity, int i) {
+  const auto self = static_cast<std::size_t>(i);
+  ViscousSums<Dim> sums;
+  for (std::size_t k = 0; k < far.index.size(); ++k) {
+    const auto j = static_cast<std::size_t>(far.index[k]);
+    const Vector<Dim> offset = position[j] - position[self];
+    sums.differences += far.weight[k] * (velocity[j] - velocity[self]);
+    sums.offsets += far.weight[k] * offset;
+    sums.spread += far.weight[k] * dot(offset, offset);
+  }
+  return sums;
+}
+
+template <int Dim>
 Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> position,
                       std::span<const Vector<Dim>> velocity, std::span<const ParticleType> type,
                       std::span<const Vector<Dim>> wall_normal, double dt, double distance, double restitution,
@@ -356,6 +371,8 @@ Vector<Dim> collision(const PairList& near, std::span<const Vector<Dim>> positio
   template Vector<Dim> pressure_gradient<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const double>,  \
                                               std::span<const ParticleType>, std::span<const Vector<Dim>>, double,     \
                                               int);                                                                    \
+  template ViscousSums<Dim> viscous_sums<Dim>(const PairRow&, std::span<const Vector<Dim>>,                            \
+                                              std::span<const Vector<Dim>>, int);                                      \
   template Vector<Dim> velocity_laplacian<Dim>(const PairRow&, std::span<const Vector<Dim>>, double, int);             \
   template Vector<Dim> collision<Dim>(const PairList&, std::span<const Vector<Dim>>, std::span<const Vector<Dim>>,     \
                                       std::span<const ParticleType>, std::span<const Vector<Dim>>, double, double,     \

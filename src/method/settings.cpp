@@ -11,6 +11,7 @@ template <class Use>
 void for_scheme_defaults(MethodSettings& s, Use&& use) {
   use(s.kernel.radius, 2.6, 2.1);
   use(s.kernel.laplacian_radius, s.dimension == 3 ? 2.1 : 2.6, 4.01);
+  use(s.fluid.corrected_viscosity, true, false);
   use(s.pressure.density_rate, s.dimension == 3 ? 1.0 : 0.1, 0.0);
   use(s.pressure.packing, true, false);
   use(s.pressure.corrected_divergence, true, false);
@@ -43,6 +44,9 @@ void declare_method(Keys& keys, MethodSettings& s) {
 
   keys.add("fluid.density", s.fluid.density, "density rho", {.unit = "kg/m^3", .range = positive, .fixed = true});
   keys.add("fluid.viscosity", s.fluid.viscosity, "kinematic viscosity nu", {.unit = "m^2/s", .range = not_negative});
+  keys.add("fluid.corrected_viscosity", s.fluid.corrected_viscosity,
+           "viscosity without a stress at the free surface and in a rotation; false: it acts as the Laplacian of the "
+           "velocity, by the paper");
   keys.add("fluid.gravity", s.fluid.gravity, "gravity; the last component is the vertical one", {.unit = "m/s^2"});
   keys.add("fluid.central_force", s.fluid.central_force, "B of a force per mass -B^2 (r - fluid.force_center)",
            {.unit = "1/s", .range = not_negative});

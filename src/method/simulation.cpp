@@ -12,6 +12,7 @@
 #include "impinge/method/shifting.hpp"
 #include "impinge/method/smoothing.hpp"
 #include "impinge/method/time_step.hpp"
+#include "impinge/method/viscosity.hpp"
 
 namespace impinge {
 namespace {
@@ -133,7 +134,9 @@ void Simulation<Dim>::try_step(double target) {
   {
     const PhaseLog log(Phase::predict);
     set_inlets(report_.time + 0.5 * report_.dt, scene_.inlets, state_.particles);
-    accelerate(rule, force, damping_, settings_.fluid.viscosity, projection_.laplacian_factor(), state_);
+    const std::vector<Vector<Dim>> viscous = viscous_change(settings_, rule.dt, projection_.lattice().number_density,
+                                                            projection_.laplacian_factor(), state_);
+    accelerate<Dim>(rule, force, damping_, viscous, state_);
     collide(settings_.collision, spacing, report_.dt, state_);
     advance(rule.before, scene_.inlets, state_.particles);
   }

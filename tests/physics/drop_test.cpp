@@ -155,5 +155,25 @@ TEST(Drop, ThatSpinsIsHeldTogetherBySuction) {
   EXPECT_NEAR(simulation.report().kinetic_energy / kinetic, 1.0, 0.01);
 }
 
+// A rotation has no rate of strain, and the surface no stress: viscosity does nothing.
+TEST(Drop, ThatSpinsAsARigidBodyFeelsNoViscosity) {
+  const Case config = parse_case({{"drop.toml", R"(geometry = "scene"
+fluid.viscosity = 0.05
+particles.spacing = 0.05
+time = {end = 0.3, dt = 5e-3}
+[[fluid.region]]
+shape = "circle"
+center = [0, 0]
+radius = 1
+spin = 1.0
+)"}});
+  auto simulation = make_simulation<2>(comm, config);
+  const double kinetic = simulation.report().kinetic_energy;
+  while (simulation.report().time < config.time.end - 1e-9) simulation.step();
+  const double left = simulation.report().kinetic_energy / kinetic;
+  if (rank_of(comm) == 0) fmt::print("  kinetic energy {:.5f} of that at the start\n", left);
+  EXPECT_NEAR(left, 1.0, 1e-3);
+}
+
 }  // namespace
 }  // namespace impinge

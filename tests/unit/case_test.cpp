@@ -103,21 +103,13 @@ std::vector<std::string> resolved_lines(const Case& config) {
   return lines;
 }
 
-const char* const scheme_keys[] = {"kernel.radius",
-                                   "kernel.laplacian_radius",
-                                   "pressure.density_rate",
-                                   "pressure.packing",
-                                   "pressure.corrected_divergence",
-                                   "pressure.corrected_gradient",
-                                   "pressure.clamp_negative",
-                                   "walls.model",
-                                   "free_surface.zero_outside",
-                                   "shifting.coefficient",
-                                   "shifting.least_distance",
-                                   "shifting.correct_velocity",
-                                   "smoothing.rate",
-                                   "collision.distance",
-                                   "time.mean_velocity"};
+const char* const scheme_keys[] = {
+    "fluid.corrected_viscosity",   "kernel.radius",           "kernel.laplacian_radius",
+    "pressure.density_rate",       "pressure.packing",        "pressure.corrected_divergence",
+    "pressure.corrected_gradient", "pressure.clamp_negative", "walls.model",
+    "free_surface.zero_outside",   "shifting.coefficient",    "shifting.least_distance",
+    "shifting.correct_velocity",   "smoothing.rate",          "collision.distance",
+    "time.mean_velocity"};
 
 std::string scheme_value(const std::string& scheme, const std::string& key) {
   for (const std::string& line : resolved_lines(parse("scheme = \"" + scheme + "\"")))
@@ -128,6 +120,7 @@ std::string scheme_value(const std::string& scheme, const std::string& key) {
 TEST(Case, TheSchemeSetsDefaults) {
   const auto check = [](const Case& c, bool consistent) {
     EXPECT_EQ(c.walls.model, consistent ? WallModel::mirror : WallModel::particles);
+    EXPECT_EQ(c.fluid.corrected_viscosity, consistent);
     EXPECT_EQ(c.kernel.radius, consistent ? 2.6 : 2.1);
     EXPECT_EQ(c.kernel.laplacian_radius, !consistent ? 4.01 : c.dimension == 3 ? 2.1 : 2.6);
     EXPECT_EQ(c.pressure.density_rate, consistent ? 0.1 : 0.0);
@@ -278,8 +271,9 @@ TEST(Case, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: shifting.least_distance = 1.1: out of range; allowed: [0, 1] (dp)"});
   EXPECT_EQ(mistakes_in("collision.distance = 1.1"),
             Texts{"case.toml:1: collision.distance = 1.1: out of range; allowed: [0, 1] (dp)"});
-  for (const std::string key : {"pressure.packing", "pressure.corrected_divergence", "pressure.corrected_gradient",
-                                "free_surface.zero_outside", "shifting.correct_velocity", "time.mean_velocity"})
+  for (const std::string key :
+       {"fluid.corrected_viscosity", "pressure.packing", "pressure.corrected_divergence", "pressure.corrected_gradient",
+        "free_surface.zero_outside", "shifting.correct_velocity", "time.mean_velocity"})
     EXPECT_EQ(mistakes_in(key + " = 1"), Texts{"case.toml:1: " + key + " = 1: not a boolean; allowed: true, false"});
 }
 

@@ -384,6 +384,22 @@ TYPED_TEST(Operators, RepulsionPartsFluidThatIsTooNear) {
   EXPECT_EQ(of(0, 0.9), Vector<Dim>{});
 }
 
+TYPED_TEST(Operators, ViscousSumsAreOverThePairs) {
+  constexpr int Dim = TypeParam::value;
+  Group<Dim> group;
+  group.add(0.0, 0.0, 1.0, -1.0);
+  group.add(0.6, 0.8, 3.0, 0.0);
+  group.add(0.0, -2.0, 0.0, 0.0);
+  const std::vector<int> index{1, 2};
+  const std::vector<double> weight{0.5, 0.25};
+  const ViscousSums<Dim> sums = viscous_sums<Dim>({index, weight}, group.position, group.velocity, 0);
+  EXPECT_DOUBLE_EQ(sums.differences[0], 0.5 * 2.0 - 0.25 * 1.0);
+  EXPECT_DOUBLE_EQ(sums.differences[1], 0.5 * 1.0 + 0.25 * 1.0);
+  EXPECT_DOUBLE_EQ(sums.offsets[0], 0.5 * 0.6);
+  EXPECT_DOUBLE_EQ(sums.offsets[1], 0.5 * 0.8 - 0.25 * 2.0);
+  EXPECT_DOUBLE_EQ(sums.spread, 0.5 * 1.0 + 0.25 * 4.0);
+}
+
 TYPED_TEST(Operators, AParticleThatLeavesAWallLeavesItsImageBehind) {
   constexpr int Dim = TypeParam::value;
   const double n0 = 4.0;

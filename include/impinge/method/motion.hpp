@@ -1,6 +1,9 @@
 #pragma once
 // How velocities move particles, docs/method.md (2), and what changes velocities besides the pressure.
 
+#include <span>
+#include <vector>
+
 #include "impinge/boundaries/inlet.hpp"
 #include "impinge/method/body_force.hpp"
 #include "impinge/method/damping.hpp"
@@ -23,12 +26,12 @@ struct MotionRule {
       : dt(dt_), before(time.mean_velocity ? 0.5 * dt_ : dt_), after(dt_ - before) {}
 };
 
-/// u* = u + dt (nu lap u + g) for the fluid, with the pairs of the last step, and what the damping takes.
-/// The body force is that where the pressure will act. `laplacian_factor`: 2 Dim/(n0 lambda) [1/m^2]. Positions are
-/// moved back by what advance() moves too far by the rule. Collective.
+/// u* = u + dt g for the fluid, with what viscosity changes and the damping takes. The body force is that where the
+/// pressure will act. `viscous`: of the owned particles, see viscous_change; empty without viscosity [m/s]. Positions
+/// are moved back by what advance() moves too far by the rule. Not collective.
 template <int Dim>
-void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping, double viscosity,
-                double laplacian_factor, State<Dim>& state);
+void accelerate(const MotionRule& rule, const BodyForce<Dim>& force, const DampingZones<Dim>& damping,
+                std::span<const Vector<Dim>> viscous, State<Dim>& state);
 
 /// Fluid particles that are about to come too near to each other bounce. `spacing`: dp [m]. Collective.
 template <int Dim>

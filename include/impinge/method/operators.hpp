@@ -123,6 +123,18 @@ double weighted_mean(const PairList& near, std::span<const double> value, int i)
 template <int Dim>
 Vector<Dim> velocity_laplacian(const PairRow& far, std::span<const Vector<Dim>> velocity, double factor, int i);
 
+/// What (11a) sums over the pairs of a particle.
+template <int Dim>
+struct ViscousSums {
+  Vector<Dim> differences;  ///< sum (u_j - u_i) W [m/s]
+  Vector<Dim> offsets;      ///< sum r_ij W [m]
+  double spread = 0.0;      ///< sum r_ij^2 W [m^2]
+};
+
+template <int Dim>
+ViscousSums<Dim> viscous_sums(const PairRow& far, std::span<const Vector<Dim>> position,
+                              std::span<const Vector<Dim>> velocity, int i);
+
 /// Change of velocity of particle i by its collisions [m/s] (22): with every fluid, inlet or wall neighbour that
 /// approaches and would be nearer than `distance` [m] after a step of `dt` [s], the pair's normal relative velocity
 /// becomes -restitution times itself; fluid partners share the change equally, so momentum is conserved, walls and

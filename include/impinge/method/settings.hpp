@@ -27,6 +27,7 @@ struct GravityEntry {
 struct FluidSettings {
   double density = 1000.0;               ///< [kg/m^3]
   double viscosity = 0.0;                ///< kinematic [m^2/s]
+  bool corrected_viscosity = true;       ///< (11a) instead of (11)
   Numbers gravity{};                     ///< [m/s^2]
   std::vector<GravityEntry> gravity_at;  ///< instead of gravity: linear in time between the entries
   double central_force = 0.0;            ///< B of the force per mass -B^2 (r - center) [1/s]
