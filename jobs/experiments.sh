@@ -57,6 +57,15 @@ table_of_runs() {
     run $level solitary-wave $n "particles.spacing=$(quotient 1 $n)" "time.dt=$(quotient 0.16 $n)"
   done
 
+  for n in 20 40; do
+    level=$([ $n = 20 ] && echo coarse || echo fine)
+    for ratio in 1 2; do
+      run $level short-plate $ratio-$n "particles.spacing=$(quotient 0.1 $n)" "time.dt=$(quotient 0.008 $n)" \
+        "wall[1].points=[[0, -$(quotient $ratio 20)], [0, $(quotient $ratio 20)]]"
+    done
+    run $level wedge $n "particles.spacing=$(quotient 0.1 $n)" "time.dt=$(quotient 0.008 $n)"
+  done
+
   # Five runs that differ by chance.
   for n in 30 60; do
     level=$([ $n = 30 ] && echo coarse || echo fine)
