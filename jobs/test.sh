@@ -7,4 +7,4 @@ cd "$(dirname "$0")/.."
 . jobs/common.sh
 
 set_up
-ctest --preset "$preset" "$@"
+ctest --preset "$preset" --parallel 2 "$@"
