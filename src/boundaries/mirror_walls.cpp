@@ -377,7 +377,11 @@ double MirrorWalls<Dim>::factor(int i, int j) const {
   if constexpr (Dim == 3)
     if (to.path.count > 1) end += displacement * spacing_ * Vector<3>{{0.36, 0.48, 0.8}};
   const std::vector<int> faces = between(self, original, length, false);
-  if (to.path.count == 1) return faces_.path_factor(begin, end, to.path, {}, faces);
+  if (to.path.count == 1) {
+    const double share = faces_.path_factor(begin, end, to.path, {}, faces);
+    // Beside a face, no wall keeps a particle from its own image: all of the share is gone where the face ends.
+    return static_cast<std::size_t>(i) == original ? std::max(2.0 * share - 1.0, 0.0) : share;
+  }
   double sum = 0.0;
   for (const MirrorPath& path : same_paths(faces_, to.path))
     sum += faces_.path_factor(begin, end, backwards ? path.reversed() : path, {}, faces);

@@ -262,6 +262,20 @@ TEST(SpecularPairsInSpace, AtABlockOnAFloorAreSymmetricAndFillIt) {
   EXPECT_NEAR(mean_density(cloud, [&](const Vector<3>& x) { return solid->distance(x) < 1.0; }), 1.0, 0.02);
 }
 
+// Beside a face nothing keeps a particle from the face's plane. There it would meet its own image.
+TEST(SpecularPairsInSpace, OfAParticleWithItselfEndWithTheFace) {
+  const auto nearest_image = [&](const Vector<3>& place) {
+    const Cloud cloud({place}, walls_of({wet_outside(box_facets({{-2, -2, -2}}, {{2, 2, 2}}))}));
+    double nearest = 10.0;
+    for (const int j : cloud.search.near().row(0))
+      nearest = std::min(nearest, norm(cloud.particles.position[static_cast<std::size_t>(j)] - place));
+    return nearest;
+  };
+  EXPECT_NEAR(nearest_image({{2.1, 1.9, 0.0}}), 0.2, 1e-12);
+  for (const double beside : {0.0, 0.01, 0.1, 0.2})
+    EXPECT_GE(nearest_image({{2.001, 2.0 + beside, 0.0}}), 1.9 * beside) << beside;
+}
+
 // Of points anywhere, a particle sees as many at a wall as far from it, but for its own images.
 TEST(SpecularPairsInSpace, AtACurvedWallSeeAUniformCloud) {
   const Facets ball = sphere_facets({{0, 0, 0}}, 6.0);
