@@ -20,6 +20,7 @@ set_up() {
 run_mpi() {
   local ranks=$1
   shift
+  [ "$ranks" -le "$(nproc)" ] || export OMPI_MCA_mpi_yield_when_idle=1  # ranks that wait leave the cores to the others
   mpirun --oversubscribe -n "$ranks" "$@"
 }
 

@@ -23,6 +23,7 @@
 #include "impinge/observe/observer_report.hpp"
 #include "impinge/observe/observers.hpp"
 #include "impinge/parallel/exchange.hpp"
+#include "impinge/programs/core_check.hpp"
 #include "impinge/programs/figures.hpp"
 #include "impinge/programs/memory_check.hpp"
 #include "impinge/programs/plan.hpp"
@@ -272,6 +273,7 @@ Observers<Dim> observers_of(MPI_Comm comm, const Case& config, const Simulation<
 template <int Dim>
 bool run(MPI_Comm comm, const Case& config, Simulation<Dim>& simulation, Observers<Dim>& observers, Output& output) {
   const bool first = rank_of(comm) == 0;
+  check_cores(comm);
   const auto start = Clock::now();
   const StepReport& report = simulation.report();
   const std::int64_t first_step = report.step;
