@@ -126,7 +126,6 @@ compute() {
 
 # The runs that are chosen, in the table's order.
 runs=()
-pids=()
 run() {
   local level=$1
   shift
@@ -134,11 +133,11 @@ run() {
   [ ${#chosen[@]} -eq 0 ] || [[ " ${chosen[*]} " == *" $1 "* ]] || return 0
   while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do sleep 0.2; done
   compute "$@" &
-  pids+=($!)
   runs+=("$1/$2")
 }
 table_of_runs
-for pid in "${pids[@]}"; do wait "$pid"; done
+wait
+for run in "${runs[@]}"; do [ -f "$root/$run/cpu_seconds" ] || exit 1; done  # it has told why
 
 page=$root/page.md
 [ $fine = no ] || page=docs/results/experiments.md
