@@ -35,7 +35,13 @@ def compared(case, runs, figure):
     results = json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True).stdout)
     for result in results:
         result["cpu"] = float(pathlib.Path(result["run"], "cpu_seconds").read_text(encoding="utf-8"))
-    return results
+    return [result for k, result in enumerate(results) if not is_in_medians(result, results[k + 1 :])]
+
+
+def is_in_medians(result, later):
+    """Whether a later run has the medians of its figures and those of this run."""
+    return any(other["resolution"] == result["resolution"] and any(row["metric"].startswith("median of") for row in other["rows"])
+               for other in later)
 
 
 def lines_of(results):
