@@ -64,7 +64,7 @@ Particles<Dim> make_cloud(const std::array<int, Dim>& extent, double jitter) {
 /// The particles `keep(record)` says yes to, sorted along the cells and, within a cell, by id.
 template <int Dim, class Keep>
 Particles<Dim> sorted(const CellGrid<Dim>& cells, const Particles<Dim>& particles, Keep&& keep) {
-  std::vector<std::tuple<int, std::int64_t, int>> order;
+  std::vector<std::tuple<std::int64_t, std::int64_t, int>> order;
   for (int i = 0; i < particles.owned; ++i) {
     const ParticleRecord<Dim> record = particles.record(i);
     if (keep(record)) order.emplace_back(cells.cell(record.position), record.id, i);

@@ -34,7 +34,15 @@ void write_checkpoint(MPI_Comm comm, const std::string& path, const Checkpoint<D
   file.create_group(checkpoint_group);
   for (const auto& [name, value] : state.numbers) file.attribute(checkpoint_group, name.c_str(), value);
   file.dataset(path_in_group("searched_position"), to_numbers(state.searched_position, state.particles.owned), 3, "m");
-  file.dataset(path_in_group("cell_owner"), rank_of(comm) == 0 ? state.owner : std::vector<int>{});
+  std::vector<std::int64_t> first;  // the same on every rank: rank 0 writes them
+  std::vector<int> owner;
+  for (const Segment& segment : state.segments) {
+    if (rank_of(comm) != 0) break;
+    first.push_back(segment.first);
+    owner.push_back(segment.rank);
+  }
+  file.dataset(path_in_group("segment_first"), first);
+  file.dataset(path_in_group("segment_owner"), owner);
   const CoarseRows& coarse = state.coarse;
   const auto write_size = [&](const char* name, std::size_t size) {
     file.dataset(path_in_group(name), std::vector{static_cast<std::int64_t>(size)});
@@ -53,6 +61,7 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
   std::optional<StateReader> file;
   std::vector<std::int64_t> pieces;
   std::int64_t all = 0;
+  bool has_segments = false;
   Checkpoint<Dim> state;
   together(comm, [&] {
     file.emplace(path);
@@ -62,12 +71,14 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
     state.numbers = file->numbers(checkpoint_group);
     pieces = file->checked_whole<std::int64_t>("/VTKHDF/NumberOfPoints");
     all = file->rows(points_path);
+    has_segments = file->has(path_in_group("segment_first").c_str());
     if (!are_parts_of(all, pieces)) file->fail("the ranks' numbers of particles do not make the whole");
   });
 
   const int rank = rank_of(comm);
   const auto ranks = static_cast<std::int64_t>(ranks_of(comm));
-  const bool own_parts = static_cast<std::int64_t>(pieces.size()) == ranks;
+  // Older checkpoints have the owner of each cell in the place of segments: they get a new partition.
+  const bool own_parts = static_cast<std::int64_t>(pieces.size()) == ranks && has_segments;
   // Where a rank's part of an array of one piece per rank begins.
   const auto before = [&](const std::vector<std::int64_t>& sizes) {
     return std::accumulate(sizes.begin(), sizes.begin() + rank, std::int64_t{0});
@@ -83,7 +94,7 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
   std::int64_t first_node = 0, nodes = 0;
   const auto check = [&] {
     together(comm, [&] {
-      if (const std::string problem = problem_of(state, rank, ranks_of(comm), first_node, nodes); !problem.empty())
+      if (const std::string problem = problem_of(state, ranks_of(comm), first_node, nodes); !problem.empty())
         file->fail(problem);
     });
   };
@@ -94,7 +105,12 @@ Checkpoint<Dim> read_checkpoint(MPI_Comm comm, const std::string& path) {
 
   std::vector<std::int64_t> rows, entries;
   together(comm, [&] {
-    state.owner = file->checked_whole<int>(path_in_group("cell_owner"));
+    const auto segment_first = file->checked_whole<std::int64_t>(path_in_group("segment_first"));
+    const auto segment_owner = file->checked_whole<int>(path_in_group("segment_owner"));
+    if (segment_first.empty() || segment_first.size() != segment_owner.size())
+      file->fail("the segments of the cells' owners are incomplete");
+    for (std::size_t k = 0; k < segment_first.size(); ++k)
+      state.segments.push_back({segment_first[k], segment_owner[k]});
     rows = file->checked_whole<std::int64_t>(path_in_group("coarse_rows"));
     entries = file->checked_whole<std::int64_t>(path_in_group("coarse_entries"));
     if (rows.size() != pieces.size() || entries.size() != pieces.size())

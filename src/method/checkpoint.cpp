@@ -19,7 +19,7 @@ std::optional<double> largest(const std::string& name) {
   if (name == "limit") return static_cast<double>(step_limit_names.size() - 1);
   if (name == "iterations" || name.starts_with("coarse_")) return std::numeric_limits<int>::max();
   if (name.starts_with("outlet_")) return exact;
-  for (const char* count : {"step", "particles", "fluid", "in", "out", "lost", "next_id"})
+  for (const char* count : {"step", "particles", "fluid", "in", "out", "lost", "next_id", "cells"})
     if (name == count) return exact;
   return {};
 }
@@ -32,10 +32,6 @@ std::string problem_of_number(const std::string& name, double value) {
   for (const char* positive : {"time", "dt", "free_dt", "max_speed"})
     if (name == positive && value < 0.0) return fmt::format("{} = {} is negative", name, value);
   return "";
-}
-
-bool are_within(const auto& values, std::int64_t low, std::int64_t high) {
-  return std::ranges::all_of(values, [&](auto value) { return value >= low && value <= high; });
 }
 
 /// True where the rows have at most `longest` entries and a positive diagonal.
@@ -59,23 +55,28 @@ bool are_rows(const CoarseRows& coarse, std::int64_t longest, std::int64_t first
 }  // namespace
 
 template <int Dim>
-std::string problem_of(const Checkpoint<Dim>& state, int rank, int ranks, std::int64_t first_node, std::int64_t nodes) {
+std::string problem_of(const Checkpoint<Dim>& state, int ranks, std::int64_t first_node, std::int64_t nodes) {
   for (const auto& [name, value] : state.numbers)
     if (const std::string problem = problem_of_number(name, value); !problem.empty()) return problem;
   const auto is_finite = [](const Vector<Dim>& value) { return std::isfinite(norm(value)); };
   if (!std::ranges::all_of(state.particles.position, is_finite) ||
       !std::ranges::all_of(state.searched_position, is_finite))
     return "a position is not finite";
-  if (!are_within(state.owner, 0, ranks - 1)) return "a cell's owner is no rank";
+  const std::vector<Segment>& segments = state.segments;
+  if (!std::ranges::all_of(segments, [&](const Segment& part) { return part.rank >= 0 && part.rank < ranks; }))
+    return "a cell's owner is no rank";
+  if (!segments.empty() &&
+      (segments.front().first != 0 ||
+       std::ranges::adjacent_find(segments, std::greater_equal{}, &Segment::first) != segments.end()))
+    return "the cells' owners are in no order";
   const CoarseRows& coarse = state.coarse;
   if (!are_rows(coarse, coarse_stencil<Dim>, first_node, nodes) ||
-      !are_within(coarse.cell, 0, std::ranges::count(state.owner, rank) - 1) ||
       std::ranges::adjacent_find(coarse.cell, std::greater_equal{}) != coarse.cell.end())
     return "the coarse matrix is none";
   return "";
 }
 
-template std::string problem_of(const Checkpoint<2>&, int, int, std::int64_t, std::int64_t);
-template std::string problem_of(const Checkpoint<3>&, int, int, std::int64_t, std::int64_t);
+template std::string problem_of(const Checkpoint<2>&, int, std::int64_t, std::int64_t);
+template std::string problem_of(const Checkpoint<3>&, int, std::int64_t, std::int64_t);
 
 }  // namespace impinge

@@ -36,7 +36,6 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   return {.particle_memory = static_cast<double>(bytes_per_particle<Dim>()) + 2.0 * sizeof(int) +
                              sizeof(Vector<Dim>),  // with the cells' order
           .row_memory = near * pair + (0.5 * far + 1.0) * entry + TwoLevelPreconditioner<Dim>::bytes_per_row,
-          .cell_memory = 3.0 * sizeof(int),
           .halo_traffic = traffic};
 }
 

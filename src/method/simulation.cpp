@@ -208,7 +208,8 @@ Checkpoint<Dim> Simulation<Dim>::checkpoint() const {
   Checkpoint<Dim> state;
   save(state);
   const Decomposition<Dim>& decomposition = state_.decomposition;
-  state.owner.assign(decomposition.owners().begin(), decomposition.owners().end());
+  state.segments = decomposition.owners().segments();
+  state.numbers["cells"] = static_cast<double>(decomposition.cells().count());
   state.numbers["achieved_imbalance"] = decomposition.achieved_imbalance();
   if (const auto& two_level = projection_.two_level()) {
     state.coarse = two_level->coarse_rows();
@@ -233,12 +234,17 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
   Particles<Dim>& particles = state_.particles;
   particles = state.particles;
   particles.position = state.searched_position;
-  if (!state.owner.empty()) {
-    if (state.owner.size() != static_cast<std::size_t>(decomposition.cells().count()))
-      throw FileError(fmt::format("the checkpoint has {} background cells, but the case has {}", state.owner.size(),
-                                  decomposition.cells().count()));
-    decomposition.set_owners(state.owner, number("achieved_imbalance"));
-  } else if (decomposition.owners().empty()) {
+  if (!state.segments.empty()) {
+    if (const auto cells = static_cast<double>(decomposition.cells().count()); number("cells") != cells)
+      throw FileError(
+          fmt::format("the checkpoint has {:.0f} background cells, but the case has {:.0f}", number("cells"), cells));
+    decomposition.set_owners({state.segments, number("achieved_imbalance")});
+    const auto is_here = [&](std::int64_t cell) {
+      return cell >= 0 && cell < decomposition.cells().count() && decomposition.owners()(cell) == rank_of(comm_);
+    };
+    if (any_rank(comm_, !std::ranges::all_of(state.coarse.cell, is_here)))
+      throw FileError("the checkpoint has rows of the coarse matrix on ranks that do not own their cells");
+  } else if (decomposition.partitions() == 0) {
     decomposition.partition(particles);
   }
   if (!std::ranges::all_of(scene_.inlets, &Inlet<Dim>::is_in_place))
@@ -258,7 +264,7 @@ void Simulation<Dim>::restore(const Checkpoint<Dim>& state) {
 
   auto& two_level = projection_.two_level();
   if (!two_level) return;
-  if (state.owner.empty() || number("coarse_age") == 0.0) {
+  if (state.segments.empty() || number("coarse_age") == 0.0) {
     two_level->expire();
   } else {
     projection_.follow_partition(decomposition);
@@ -424,7 +430,7 @@ void Simulation<Dim>::measure_totals() {
 template <int Dim>
 std::size_t Simulation<Dim>::bytes() const {
   return static_cast<std::size_t>(state_.particles.size()) * bytes_per_particle<Dim>() + state_.search.bytes() +
-         projection_.bytes();
+         state_.decomposition.bytes() + projection_.bytes();
 }
 
 template <int Dim>

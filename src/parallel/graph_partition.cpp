@@ -74,24 +74,20 @@ std::vector<int> partition_with_ptscotch(MPI_Comm comm, const CellGraph& graph, 
 }  // namespace
 
 void declare_parallel(Keys& keys, ParallelSettings& settings) {
-  keys.add("parallel.partitioner", settings.partitioner, "library that distributes the cells over the ranks");
+  keys.add(
+      "parallel.partitioner", settings.partitioner,
+      "how the cells are distributed over the ranks: by the graph of the cells with particles (metis, ptscotch) or "
+      "by cuts of a space-filling curve; auto: metis up to 16 ranks and 4 million particles, then curve");
   keys.add("parallel.imbalance", settings.imbalance,
            "largest over mean number of particles of a rank that calls for a new partition",
            {.range = from_to(1, 100)});
-}
-
-bool needs_edges(MPI_Comm comm, int parts, Partitioner partitioner) {
-  return parts > 1 && (partitioner == Partitioner::ptscotch || rank_of(comm) == 0);
 }
 
 std::vector<int> partition_graph(MPI_Comm comm, const CellGraph& graph, int parts, Partitioner partitioner) {
   parts = std::min(parts, graph.size());
   if (parts <= 1) return std::vector<int>(static_cast<std::size_t>(graph.size()), 0);
   if (partitioner == Partitioner::ptscotch) return partition_with_ptscotch(comm, graph, parts);
-  std::vector<int> part(static_cast<std::size_t>(graph.size()));
-  if (rank_of(comm) == 0) part = partition_with_metis(graph, parts);
-  MPI_Bcast(part.data(), graph.size(), MPI_INT, 0, comm);
-  return part;
+  return partition_with_metis(graph, parts);
 }
 
 }  // namespace impinge

@@ -27,8 +27,8 @@ CellGrid<Dim> CellGrid<Dim>::refined(int parts) const {
 }
 
 template <int Dim>
-int CellGrid<Dim>::count() const {
-  int cells = 1;
+std::int64_t CellGrid<Dim>::count() const {
+  std::int64_t cells = 1;
   for (const int n : extent_) cells *= n;
   return cells;
 }
@@ -53,20 +53,20 @@ std::array<int, Dim> CellGrid<Dim>::coordinates(const Vector<Dim>& position) con
 }
 
 template <int Dim>
-std::array<int, Dim> CellGrid<Dim>::coordinates(int cell) const {
+std::array<int, Dim> CellGrid<Dim>::coordinates(std::int64_t cell) const {
   std::array<int, Dim> at;
   for (int k = Dim - 1; k >= 0; --k) {
     const auto axis = static_cast<std::size_t>(k);
-    at[axis] = cell % extent_[axis];
+    at[axis] = static_cast<int>(cell % extent_[axis]);
     cell /= extent_[axis];
   }
   return at;
 }
 
 template <int Dim>
-int CellGrid<Dim>::cell(const Vector<Dim>& position) const {
+std::int64_t CellGrid<Dim>::cell(const Vector<Dim>& position) const {
   const Vector<Dim> in_edges = this->in_edges(position);
-  int index = 0;
+  std::int64_t index = 0;
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const double at = std::floor(in_edges[k]);
@@ -77,9 +77,9 @@ int CellGrid<Dim>::cell(const Vector<Dim>& position) const {
 }
 
 template <int Dim>
-int CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Vector<Dim>& shift) const {
+std::int64_t CellGrid<Dim>::wrapped_cell(std::array<int, Dim> coordinates, Vector<Dim>& shift) const {
   shift = {};
-  int index = 0;
+  std::int64_t index = 0;
   for (int k = 0; k < Dim; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const int n = extent_[axis];

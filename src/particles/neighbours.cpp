@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::size_t lanes = 8;  // that arrays are read and written beyond their ends
 
+// A box of more cells than this is searched by its occupied cells alone.
+constexpr std::int64_t most_box_cells = 1 << 20, most_cells_of_a_particle = 16;
+
 // Writes the entries of the places [first, last) whose square of the distance to the centre is between two bounds, and
 // these squares; returns how many.
 template <int Dim>
@@ -88,28 +91,41 @@ void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
       high[k] = i == 0 ? at[i][k] : std::max(high[k], at[i][k]);
     }
   }
-  std::size_t n_cells = 1;
+  std::int64_t box_cells = 1;
   for (std::size_t k = 0; k < Dim; ++k) {
     box_low_[k] = low[k] - reach_;
     box_extent_[k] = high[k] - low[k] + 1 + 2 * reach_;
-    n_cells *= static_cast<std::size_t>(box_extent_[k]);
+    box_cells *= box_extent_[k];
   }
+  const auto box_cell = [&](std::size_t i) {
+    std::int64_t cell = 0;
+    for (std::size_t k = 0; k < Dim; ++k) cell = cell * box_extent_[k] + at[i][k] - box_low_[k];
+    return cell;
+  };
+  occupied_.clear();
+  lines_of_ = -1;
+  if (box_cells > most_box_cells + most_cells_of_a_particle * static_cast<std::int64_t>(n)) {
+    for (std::size_t i = 0; i < n; ++i) occupied_.push_back(box_cell(i));
+    std::ranges::sort(occupied_);
+    occupied_.erase(std::unique(occupied_.begin(), occupied_.end()), occupied_.end());
+  }
+  const std::size_t n_cells = occupied_.empty() ? static_cast<std::size_t>(box_cells) : occupied_.size();
   const auto is_left_out = [&](std::size_t i) { return walls_measure_ && particles.type[i] == ParticleType::wall; };
   // A counting sort by cells and, within a cell, by ids: the order of the owned particles and of what one rank sent.
-  box_cell_.resize(n);
+  local_cell_.resize(n);
   cell_start_.assign(n_cells + 2, 0);
   const auto next = cell_start_.begin() + 1;  // of each cell; ends as the start of the cell behind
   for (std::size_t i = 0; i < n; ++i) {
-    int cell = 0;
-    for (std::size_t k = 0; k < Dim; ++k) cell = cell * box_extent_[k] + at[i][k] - box_low_[k];
-    box_cell_[i] = cell;
+    std::int64_t cell = box_cell(i);
+    if (!occupied_.empty()) cell = std::ranges::lower_bound(occupied_, cell) - occupied_.begin();
+    local_cell_[i] = static_cast<int>(cell);
     if (!is_left_out(i)) ++next[cell + 1];
   }
   for (std::size_t c = 0; c < n_cells; ++c) cell_start_[c + 2] += cell_start_[c + 1];
   entry_.resize(n + lanes);
   place_.resize(n);
   for (std::size_t i = 0; i < n; ++i)
-    if (!is_left_out(i)) entry_[static_cast<std::size_t>(next[box_cell_[i]]++)] = static_cast<int>(i);
+    if (!is_left_out(i)) entry_[static_cast<std::size_t>(next[local_cell_[i]]++)] = static_cast<int>(i);
   // Images of the particles of several ranks may stand in one cell.
   for (std::size_t c = 0; walls_measure_ && c < n_cells; ++c) {
     const auto first = entry_.begin() + cell_start_[c], last = entry_.begin() + cell_start_[c + 1];
@@ -123,6 +139,38 @@ void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
     for (int k = 0; k < Dim; ++k) entry_position_[static_cast<std::size_t>(k)][place] = particles.position[i][k];
     place_[i] = static_cast<int>(place);
   }
+}
+
+// From a cell to the cell a lines on along the first axis and, in space, b along the second.
+template <int Dim>
+std::int64_t NeighbourSearch<Dim>::line_offset(int a, int b) const {
+  std::int64_t lines = a;
+  if constexpr (Dim == 3) lines = lines * box_extent_[1] + b;
+  return lines * box_extent_[Dim - 1];
+}
+
+// Where the cells of a line around a local cell begin in entry_: from the one beside it on, to both sides. Valid until
+// the next call.
+template <int Dim>
+const int* NeighbourSearch<Dim>::starts_around(int cell, int a, int b) {
+  if (occupied_.empty()) return cell_start_.data() + cell + line_offset(a, b);
+  const int span = 2 * reach_ + 1, second_reach = Dim == 3 ? reach_ : 0;
+  if (lines_of_ != cell) {
+    lines_of_ = cell;
+    line_start_.clear();
+    for (int p = -reach_; p <= reach_; ++p) {
+      for (int q = -second_reach; q <= second_reach; ++q) {
+        const std::int64_t centre = occupied_[static_cast<std::size_t>(cell)] + line_offset(p, q);
+        auto next = std::ranges::lower_bound(occupied_, centre - reach_);
+        for (int layer = -reach_; layer <= reach_ + 1; ++layer) {
+          while (next != occupied_.end() && *next < centre + layer) ++next;
+          line_start_.push_back(cell_start_[static_cast<std::size_t>(next - occupied_.begin())]);
+        }
+      }
+    }
+  }
+  const int line = Dim == 3 ? (a + reach_) * span + b + reach_ : a + reach_;
+  return line_start_.data() + line * (span + 1) + reach_;
 }
 
 // Appends the particles within a radius of the centre of particle i, whose squares of distances are `above`, to the
@@ -146,24 +194,20 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
   };
   std::array<const double*, Dim> position;
   for (std::size_t k = 0; k < Dim; ++k) position[k] = entry_position_[k].data();
-  const int own_cell = box_cell_[static_cast<std::size_t>(i)];
+  const int own_cell = local_cell_[static_cast<std::size_t>(i)];
   const int second_reach = Dim == 3 ? reach_ : 0;
   for (int a = -reach_; a <= reach_; ++a) {
     for (int b = -second_reach; b <= second_reach; ++b) {
       // A run of cells along the last axis, as far as the sphere reaches.
       double rest = (1.0 + 1e-12) * radius2 - gap2(0, a);
-      int row = a;
-      if constexpr (Dim == 3) {
-        rest -= gap2(1, b);
-        row = a * box_extent_[1] + b;
-      }
+      if constexpr (Dim == 3) rest -= gap2(1, b);
       if (rest <= 0.0) continue;
       int from = 0, to = 0;
       while (from > -reach_ && gap2(Dim - 1, from - 1) < rest) --from;
       while (to < reach_ && gap2(Dim - 1, to + 1) < rest) ++to;
-      const int cell = own_cell + row * box_extent_[Dim - 1];
-      const auto first = static_cast<std::size_t>(cell_start_[static_cast<std::size_t>(cell + from)]);
-      const auto last = static_cast<std::size_t>(cell_start_[static_cast<std::size_t>(cell + to + 1)]);
+      const int* starts = starts_around(own_cell, a, b);
+      const auto first = static_cast<std::size_t>(starts[from]);
+      const auto last = static_cast<std::size_t>(starts[to + 1]);
       if (const std::size_t most = used + (last - first) + lanes; most > index_.size()) {
         index_.resize(2 * most);
         square_.resize(2 * most);
@@ -321,7 +365,8 @@ template <int Dim>
 std::size_t NeighbourSearch<Dim>::bytes() const {
   std::size_t sum =
       near_.bytes() +
-      (cell_start_.capacity() + entry_.capacity() + place_.capacity() + box_cell_.capacity()) * sizeof(int);
+      (cell_start_.capacity() + entry_.capacity() + place_.capacity() + local_cell_.capacity()) * sizeof(int) +
+      occupied_.capacity() * sizeof(std::int64_t);
   for (const auto& coordinates : entry_position_) sum += coordinates.capacity() * sizeof(double);
   return sum + type_.capacity() * sizeof(ParticleType);
 }

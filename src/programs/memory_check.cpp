@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "impinge/core/errors.hpp"
 #include "impinge/core/memory.hpp"
@@ -15,9 +14,9 @@
 namespace impinge {
 namespace {
 
-constexpr double libraries = 40e6;            // measured without a case [bytes]
-constexpr double with_preconditioner = 1.5;   // over the arrays: measured 1.5 in 2D, 1.05 in 3D
-constexpr double plan_of_a_cell = 5.0 * 4.0;  // plan_run has five integers for each [bytes]
+constexpr double libraries = 40e6;           // measured without a case [bytes]
+constexpr double with_preconditioner = 1.5;  // over the arrays: measured 1.5 in 2D, 1.05 in 3D
+constexpr double plan_of_a_cell = 100.0;     // with particles; measured [bytes]
 
 /// Owned particles of a scene, and those with a row of the matrix.
 struct Counts {
@@ -42,24 +41,30 @@ Counts count(const Scene<Dim>& scene) {
   return {scale * counts.particles, scale * counts.rows};
 }
 
-/// Background cells. Throws InputError where their parts are too many for the integers that count them.
+/// Throws InputError where an axis has more background cells than they have numbers for.
 template <int Dim>
-double cells_of(const Scene<Dim>& scene, const Case& config) {
-  double cells = 1.0;
+void check_extent(const Scene<Dim>& scene, const Case& config) {
+  constexpr int most = CellGrid<Dim>::most_extent;
   for (int k = 0; k < Dim; ++k)
-    cells *= std::max(1.0, std::floor((scene.bounds.high[k] - scene.bounds.low[k]) / least_cell_edge(config)));
-  constexpr int most = std::numeric_limits<int>::max();
-  if (const double parts = cells * std::pow(Decomposition<Dim>::cell_parts, Dim); parts > most)
-    throw InputError({fmt::format("{}: particles.spacing = {}: makes some {:.2g} background cells; allowed: at most {}",
-                                  config.spacing_place, number_text(config.particles.spacing), parts, most)});
-  return cells;
+    if (const double cells = (scene.bounds.high[k] - scene.bounds.low[k]) / least_cell_edge(config); cells > most)
+      throw InputError(
+          {fmt::format("{}: particles.spacing = {}: makes some {:.2g} background cells along an axis; "
+                       "allowed: at most {}",
+                       config.spacing_place, number_text(config.particles.spacing), cells, most)});
+}
+
+/// Background cells with particles.
+template <int Dim>
+double occupied_cells(double particles, const Case& config) {
+  return particles / std::pow(config.kernel.cell_edge(), Dim);
 }
 
 /// The graph of the cells with particles, where it is partitioned [bytes].
 template <int Dim>
-double graph_of(double particles, const Case& config, int ranks) {
-  const double occupied_cells = particles / std::pow(config.kernel.cell_edge(), Dim);
-  return ranks > 1 ? occupied_cells * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1) : 0.0;
+double graph_of(const Counts& counts, const Case& config, int ranks) {
+  const double work = counts.particles + 3.0 * counts.rows;  // see work_of
+  if (ranks == 1 || chosen_partitioner(config.parallel.partitioner, ranks, work) == Partitioner::curve) return 0.0;
+  return occupied_cells<Dim>(counts.particles, config) * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1);
 }
 
 /// Ranks of one node.
@@ -97,6 +102,7 @@ double load(MPI_Comm comm, double need) {
 template <int Dim>
 MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
+  check_extent(scene, config);
   const UnitCosts costs = unit_costs<Dim>(config);
   const Counts counts =
       particles > 0 ? Counts{static_cast<double>(particles), static_cast<double>(particles)} : count(scene);
@@ -104,9 +110,8 @@ MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
   // Around a cube of the owned ones.
   const double halo = std::pow(std::pow(owned, 1.0 / Dim) + 2.0 * config.kernel.largest(), Dim) - owned;
   return {.particles = counts.particles,
-          .rank = (owned + halo) * costs.particle_memory + counts.rows / ranks * costs.row_memory +
-                  cells_of(scene, config) * costs.cell_memory + libraries,
-          .graph = graph_of<Dim>(counts.particles, config, ranks)};
+          .rank = (owned + halo) * costs.particle_memory + counts.rows / ranks * costs.row_memory + libraries,
+          .graph = graph_of<Dim>(counts, config, ranks)};
 }
 
 double free_memory(MPI_Comm comm) {
@@ -118,7 +123,7 @@ double free_memory(MPI_Comm comm) {
 template <int Dim>
 void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles) {
   const MemoryNeed need = memory_need<Dim>(config, ranks_of(comm), particles);
-  const bool partitions = needs_edges(comm, ranks_of(comm), config.parallel.partitioner);
+  const bool partitions = rank_of(comm) == 0 || config.parallel.partitioner == Partitioner::ptscotch;
   const double used = load(comm, need.rank + (partitions ? need.graph : 0.0));
   const double free = free_memory(comm);
   if (used > 1.0)
@@ -133,8 +138,11 @@ void check_memory(MPI_Comm comm, const Case& config, std::int64_t particles) {
 template <int Dim>
 void check_memory_of_plan(MPI_Comm comm, const Case& config, int ranks) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
-  const double particles = count(scene).particles;
-  const double need = cells_of(scene, config) * plan_of_a_cell + graph_of<Dim>(particles, config, ranks) + libraries;
+  check_extent(scene, config);
+  const Counts counts = count(scene);
+  const double particles = counts.particles;
+  const double need =
+      occupied_cells<Dim>(particles, config) * plan_of_a_cell + graph_of<Dim>(counts, config, ranks) + libraries;
   const double free = free_memory(comm);
   if (need > free)
     refuse(config, particles, need, free, config.particles.spacing * std::pow(need / free, 1.0 / Dim),

@@ -14,70 +14,121 @@
 namespace impinge {
 namespace {
 
-// Particles of each cell, of all ranks.
-struct CellCounts {
-  std::vector<int> work, particles, rows;
+// Particles of a cell, of all ranks or of some.
+struct CellCount {
+  std::int64_t key;
+  int particles, rows;
 };
 
+void merge(std::vector<CellCount>& counts) {
+  merge_keys(counts, [](CellCount& to, const CellCount& from) {
+    to.particles += from.particles;
+    to.rows += from.rows;
+  });
+}
+
+// On rank 0.
 template <int Dim>
-CellCounts count_particles(MPI_Comm comm, const CellGrid<Dim>& cells, const Scene<Dim>& scene) {
-  const auto n_cells = static_cast<std::size_t>(cells.count());
-  CellCounts counts{std::vector<int>(n_cells), std::vector<int>(n_cells), std::vector<int>(n_cells)};
+std::vector<CellCount> count_particles(MPI_Comm comm, const CellGrid<Dim>& cells, const CellCurve<Dim>& curve,
+                                       const Scene<Dim>& scene) {
+  std::vector<CellCount> counts;
+  std::size_t merged = 0;
   // One piece after the other, so that the particles are never all in memory.
   constexpr std::int64_t of_a_piece = 100'000;
   const int pieces = static_cast<int>(scene.next_id / of_a_piece / ranks_of(comm)) + 1;
   for (int piece = 0; piece < pieces; ++piece) {
     Particles<Dim> particles;
     scene.fill(rank_of(comm) * pieces + piece, ranks_of(comm) * pieces, particles);
-    add_work<Dim>(cells, particles, counts.work);
+    std::int64_t last = -1;
     for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-      const int at = cells.cell(cells.wrapped(particles.position[i]));
-      if (at < 0) continue;
-      const ParticleType type = particles.type[i];
-      ++counts.particles[static_cast<std::size_t>(at)];
-      counts.rows[static_cast<std::size_t>(at)] += type == ParticleType::fluid || type == ParticleType::wall;
+      const std::int64_t cell = cells.cell(cells.wrapped(particles.position[i]));
+      if (cell < 0) continue;
+      if (cell != last) counts.push_back({curve.key(cells.coordinates(cell)), 0, 0});
+      last = cell;
+      ++counts.back().particles;
+      counts.back().rows += has_row(particles.type[i]);
+    }
+    if (constexpr std::size_t few = 1 << 22; counts.size() > 2 * merged + few || piece + 1 == pieces) {
+      merge(counts);
+      merged = counts.size();
     }
   }
-  for (auto* values : {&counts.work, &counts.particles, &counts.rows})
-    MPI_Allreduce(MPI_IN_PLACE, values->data(), cells.count(), MPI_INT, MPI_SUM, comm);
+  std::vector<std::pair<int, CellCount>> sends;
+  if (ranks_of(comm) == 1) return counts;
+  for (const CellCount& count : counts) sends.emplace_back(0, count);
+  counts = exchange_items(comm, std::span<const std::pair<int, CellCount>>(sends));
+  merge(counts);
   return counts;
 }
 
+// Particles that each rank receives, and the coarse values that it has of others' cells, as if each cell with particles
+// had one.
 template <int Dim>
-void count_halo(const CellGrid<Dim>& cells, std::span<const int> owner, const CellCounts& counts, Plan& plan) {
+void count_copies(const CellGrid<Dim>& cells, const CellOwners<Dim>& owner, std::span<const CellCount> counts,
+                  Plan& plan) {
   std::vector<std::pair<int, int>> exchanges;  // (receiver, sender)
+  const auto make_distinct = [&] {
+    std::ranges::sort(exchanges);
+    exchanges.erase(std::unique(exchanges.begin(), exchanges.end()), exchanges.end());
+  };
+  constexpr int reach = TwoLevelPreconditioner<Dim>::node_reach;
   std::vector<HaloTarget<Dim>> targets;
-  for (int cell = 0; cell < cells.count(); ++cell) {
-    const auto c = static_cast<std::size_t>(cell);
-    if (counts.particles[c] == 0) continue;
+  std::vector<int> users;
+  std::size_t distinct = 0;
+  for (const CellCount& count : counts) {
+    Vector<Dim> shift;
+    const std::int64_t cell = cells.wrapped_cell(owner.curve().coordinates(count.key), shift);
+    const int self = owner(cell);
     targets.clear();
     append_halo_targets<Dim>(cells, owner, cell, targets);
     for (const auto& target : targets) {
       RankPlan& receiver = plan.ranks[static_cast<std::size_t>(target.rank)];
-      receiver.halo += counts.particles[c];
-      if (target.rank == owner[c]) continue;
-      receiver.received += counts.particles[c];
-      exchanges.emplace_back(target.rank, owner[c]);
+      receiver.halo += count.particles;
+      if (target.rank == self) continue;
+      receiver.received += count.particles;
+      exchanges.emplace_back(target.rank, self);
     }
-  }
-  std::sort(exchanges.begin(), exchanges.end());
-  exchanges.erase(std::unique(exchanges.begin(), exchanges.end()), exchanges.end());
-  for (const auto& [receiver, sender] : exchanges) ++plan.ranks[static_cast<std::size_t>(receiver)].neighbours;
-}
-
-// A rank has the coarse values of its cells and of those around them.
-template <int Dim>
-void count_node_copies(const CellGrid<Dim>& cells, std::span<const int> owner, Plan& plan) {
-  std::vector<int> users;
-  for (int cell = 0; cell < cells.count(); ++cell) {
-    users.assign(1, owner[static_cast<std::size_t>(cell)]);
-    for_cells_around(cells, cell, TwoLevelPreconditioner<Dim>::node_reach, [&](int near, const Vector<Dim>&) {
-      const int user = owner[static_cast<std::size_t>(near)];
-      if (std::find(users.begin(), users.end(), user) != users.end()) return;
+    if (exchanges.size() > 2 * distinct + 1'000'000) {
+      make_distinct();
+      distinct = exchanges.size();
+    }
+    users.assign(1, self);
+    for_cells_around(cells, cell, reach, [&](std::int64_t near, const Vector<Dim>&) {
+      const int user = owner(near);
+      if (std::ranges::find(users, user) != users.end()) return;
       users.push_back(user);
       ++plan.ranks[static_cast<std::size_t>(user)].node_copies;
     });
   }
+  make_distinct();
+  for (const auto& [receiver, sender] : exchanges) ++plan.ranks[static_cast<std::size_t>(receiver)].neighbours;
+}
+
+// The plan of one process, without the costs.
+template <int Dim>
+Plan plan_of(const CellGrid<Dim>& cells, std::span<const CellCount> counts, int ranks, Partitioner partitioner) {
+  std::vector<CellWork> work;
+  work.reserve(counts.size());
+  for (const CellCount& count : counts) work.push_back({count.key, work_of(count.particles, count.rows)});
+  Plan plan;
+  plan.occupied = static_cast<std::int64_t>(counts.size());
+  const double begin = MPI_Wtime();
+  const CellOwners<Dim> owner(cells, distribute_cells<Dim>(MPI_COMM_SELF, cells, work, ranks, partitioner).segments);
+  plan.cut_seconds = MPI_Wtime() - begin;
+  work = {};
+  plan.segments = static_cast<std::int64_t>(owner.segments().size());
+  plan.ranks.resize(static_cast<std::size_t>(ranks));
+  auto segment = owner.segments().begin();
+  for (const CellCount& count : counts) {
+    while (segment + 1 != owner.segments().end() && (segment + 1)->first <= count.key) ++segment;
+    RankPlan& rank = plan.ranks[static_cast<std::size_t>(segment->rank)];
+    rank.work += work_of(count.particles, count.rows);
+    rank.owned += count.particles;
+    rank.rows += count.rows;
+    ++rank.nodes;
+  }
+  count_copies<Dim>(cells, owner, counts, plan);
+  return plan;
 }
 
 }  // namespace
@@ -86,29 +137,29 @@ template <int Dim>
 Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
   const Scene<Dim> scene = make_scene<Dim>(config, config);
   const CellGrid<Dim> cells(scene.bounds, scene.periodic, least_cell_edge(config));
-  constexpr double of_a_cell = 2e-7, patience = 1.0;  // measured with few particles in each; what needs no word [s]
-  if (const double seconds = of_a_cell * cells.count(); seconds > patience && rank_of(comm) == 0)
-    fmt::print(stderr, "impinge: planning {} background cells takes some {:.2g} s\n", cells.count(), seconds);
-  const CellCounts counts = count_particles<Dim>(comm, cells, scene);
+  constexpr double of_a_particle = 3e-7, patience = 1.0;  // measured; what needs no word [s]
+  if (const double seconds = of_a_particle * static_cast<double>(scene.next_id);
+      seconds > patience && rank_of(comm) == 0)
+    fmt::print(stderr, "impinge: planning {:.2g} particles takes some {:.2g} s\n", static_cast<double>(scene.next_id),
+               seconds);
+  const CellCurve<Dim> curve(cells);
+  std::vector<CellCount> counts = count_particles<Dim>(comm, cells, curve, scene);
   // One process partitions: PTScotch waits for ever where three are to make more than three parts.
-  std::vector<int> owner(counts.work.size());
-  if (rank_of(comm) == 0)
-    owner = distribute_cells<Dim>(MPI_COMM_SELF, cells, counts.work, ranks, config.parallel.partitioner);
-  MPI_Bcast(owner.data(), cells.count(), MPI_INT, 0, comm);
-
   Plan plan;
-  plan.cells = cells.count();
+  if (rank_of(comm) == 0) plan = plan_of<Dim>(cells, counts, ranks, config.parallel.partitioner);
   plan.ranks.resize(static_cast<std::size_t>(ranks));
-  for (std::size_t cell = 0; cell < owner.size(); ++cell) {
-    RankPlan& rank = plan.ranks[static_cast<std::size_t>(owner[cell])];
-    rank.work += counts.work[cell];
-    rank.owned += counts.particles[cell];
-    rank.rows += counts.rows[cell];
-    rank.nodes += counts.particles[cell] > 0;
-    plan.occupied += counts.particles[cell] > 0;
-  }
-  count_halo<Dim>(cells, owner, counts, plan);
-  count_node_copies<Dim>(cells, owner, plan);
+  MPI_Datatype rank_plan;
+  MPI_Type_contiguous(sizeof(RankPlan), MPI_BYTE, &rank_plan);
+  MPI_Type_commit(&rank_plan);
+  MPI_Bcast(plan.ranks.data(), ranks, rank_plan, 0, comm);
+  MPI_Type_free(&rank_plan);
+  for (std::int64_t* number : {&plan.occupied, &plan.segments}) MPI_Bcast(number, 1, MPI_INT64_T, 0, comm);
+  MPI_Bcast(&plan.cut_seconds, 1, MPI_DOUBLE, 0, comm);
+  double work = 0.0;
+  for (const RankPlan& rank : plan.ranks) work += static_cast<double>(rank.work);
+  plan.partitioner = chosen_partitioner(config.parallel.partitioner, ranks, work);
+  plan.key_bits = curve.bits();
+  plan.cells = cells.count();
 
   const UnitCosts costs = unit_costs<Dim>(config);
   for (RankPlan& rank : plan.ranks) {
@@ -116,8 +167,7 @@ Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
     rank.step_bytes = static_cast<double>(rank.received) * costs.halo_traffic;
     rank.iteration_bytes = static_cast<double>(rank.received + 2 * rank.node_copies) * sizeof(double);
     rank.memory = static_cast<double>(rank.owned + rank.halo) * costs.particle_memory +
-                  static_cast<double>(rank.rows) * costs.row_memory +
-                  static_cast<double>(plan.cells) * costs.cell_memory;
+                  static_cast<double>(rank.rows) * costs.row_memory + static_cast<double>(plan.table_bytes());
   }
   return plan;
 }

@@ -205,7 +205,14 @@ void print_plan(const Case& config, const Plan& plan) {
              bytes_text(most_memory));
   fmt::print("nodes       mean {:.1f}, most {:.0f} cells with particles: rows of the coarse matrix\n", nodes,
              most_nodes);
-  fmt::print("cells       {}, {} of them with particles (the partitioned graph)\n", plan.cells, plan.occupied);
+  fmt::print("cells       {}, {} of them with particles: {:.1f} of a rank\n", plan.cells, plan.occupied,
+             static_cast<double>(plan.occupied) / ranks);
+  fmt::print("partition   by {}, {:.3g} s on one process; {} segments, {:.3g} kB on each rank\n",
+             words(plan.partitioner)[static_cast<std::size_t>(plan.partitioner)], plan.cut_seconds, plan.segments,
+             static_cast<double>(plan.table_bytes()) / 1e3);
+  if (plan.partitioner == Partitioner::curve)
+    fmt::print("repartition {} sums of {:.3g} kB over the ranks\n", plan.key_bits,
+               static_cast<double>((plan.ranks.size() - 1) * sizeof(std::int64_t)) / 1e3);
 }
 
 /// Tells once that fluid has left the bounds, and warns once where it is a hundredth of all.

@@ -351,13 +351,11 @@ void derive_domain(const Keys& keys, SceneSettings& s, const SceneInputs& in) {
   }
 }
 
-/// Notes bounds that hold no fluid, or more than can be counted.
+/// Notes bounds that hold no fluid.
 void check_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
   const bool has_low = keys.given(s.domain.low), has_high = keys.given(s.domain.high);
-  double volume = 1.0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(in.dimension); ++k) {
     const double low = s.domain.low[k], high = s.domain.high[k];
-    volume *= high - low;
     if (high - low > 2.0 * in.spacing || (!has_low && !has_high)) continue;  // the default has room around any fluid
     constexpr const char* what = "the bounds are narrower than two particles; allowed: {} {} (m)";
     if (has_high) {
@@ -367,7 +365,6 @@ void check_domain(Keys& keys, const SceneSettings& s, const SceneInputs& in) {
     }
     return;
   }
-  check_count(keys, in, volume);
 }
 
 /// Notes walls that reach out of the bounds: their particles would be lost.

@@ -149,6 +149,18 @@ void add_loops(Block<Dim>& block) {
   add_loop("assembly", [&block] { block.assemble(); });
 }
 
+/// What one of many ranks computes of a partition by the curve: it knows the work of some cells in a row. The sums over
+/// the ranks are not in it.
+void add_cut(int n_cells, int parts) {
+  const CellGrid<3> cells({{}, {{256.0, 256.0, 256.0}}}, {}, 1.0);
+  std::vector<CellWork> work;
+  for (int k = 0; k < n_cells; ++k) work.push_back({1'000'000 + k, 60});
+  add(fmt::format("cut/{}_cells/{}_parts", n_cells, parts), parts, [=] {
+    const Cut cut = distribute_cells<3>(MPI_COMM_SELF, cells, work, parts, Partitioner::curve);
+    benchmark::DoNotOptimize(cut.segments.data());
+  });
+}
+
 }  // namespace
 }  // namespace impinge
 
@@ -166,6 +178,8 @@ int main(int argc, char** argv) {
     add_loops(large_flat);
     add_loops(cube);
     add_loops(large_cube);
+    add_cut(3700, 1000);
+    add_cut(370, 10'000);
     benchmark::RunSpecifiedBenchmarks();
   }
   MPI_Finalize();

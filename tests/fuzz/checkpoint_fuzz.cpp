@@ -112,8 +112,12 @@ void change(Checkpoint<2>& state, std::span<const std::uint8_t, change_size> byt
       break;
     case 10:
       return put(particles.free_surface);
-    case 11:
-      return put(state.owner);
+    case 11: {
+      Segment& segment = state.segments[place / 2 % state.segments.size()];
+      if (place % 2 == 0) segment.rank = value_of<int>(bytes);
+      if (place % 2 == 1) segment.first = value_of<std::int64_t>(bytes);
+      break;
+    }
     case 12:
       return put(coarse.cell);
     case 13:
@@ -122,8 +126,8 @@ void change(Checkpoint<2>& state, std::span<const std::uint8_t, change_size> byt
       return put(coarse.column);
     case 15:
       return put(coarse.value);
-    case 16:  // one row or cell less
-      if (place % 2 == 0 && !state.owner.empty()) state.owner.pop_back();
+    case 16:  // one row less or one segment more
+      if (place % 2 == 0) state.segments.push_back({value_of<std::int64_t>(bytes), 0});
       if (place % 2 == 1 && !coarse.cell.empty()) {
         coarse.cell.pop_back();
         for (std::int64_t k = 0; k < coarse.length.back(); ++k) {

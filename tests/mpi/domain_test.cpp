@@ -110,9 +110,10 @@ void expect_record(const ParticleRecord<Dim>& record, const Particles<Dim>& all)
 
 template <int Dim>
 void expect_sorted(const Decomposition<Dim>& domain, const Particles<Dim>& particles) {
-  std::pair<int, std::int64_t> last{-1, -1};
+  std::pair<std::int64_t, std::int64_t> last{-1, -1};
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles.owned); ++i) {
-    const std::pair<int, std::int64_t> here{domain.sorting_cells().cell(particles.position[i]), particles.id[i]};
+    const std::pair<std::int64_t, std::int64_t> here{domain.sorting_cells().cell(particles.position[i]),
+                                                     particles.id[i]};
     EXPECT_LT(last, here);
     last = here;
   }
@@ -125,7 +126,7 @@ class Domains : public testing::Test {
   template <class Use>
   static void for_variants(Use&& use) {
     for (const Edge edge : {Edge::open, Edge::periodic, Edge::mirror}) {
-      for (const Partitioner partitioner : {Partitioner::metis, Partitioner::ptscotch}) {
+      for (const Partitioner partitioner : {Partitioner::metis, Partitioner::ptscotch, Partitioner::curve}) {
         SCOPED_TRACE(testing::Message() << "edge " << static_cast<int>(edge) << ", partitioner "
                                         << static_cast<int>(partitioner));
         use(edge, partitioner);
@@ -320,6 +321,61 @@ TYPED_TEST(Domains, WithoutParticlesAreHarmless) {
     EXPECT_EQ(none.size(), 0);
     EXPECT_EQ(domain.imbalance(none), 1.0);
   });
+}
+
+// Two clouds far from one another in a box of 10^12 cells.
+TYPED_TEST(Domains, MayBeHuge) {
+  constexpr int Dim = TypeParam::value;
+  Box<Dim> box;
+  for (int k = 0; k < Dim; ++k) box.high[k] = (Dim == 2 ? 1e6 : 1e4) * 1.001 * far_radius;
+  const Particles<Dim> near_by = cloud<Dim>();
+  Particles<Dim> all;
+  for (const double place : {0.3, 0.7}) {
+    for (int i = 0; i < near_by.owned; ++i) {
+      auto record = near_by.record(i);
+      for (int k = 0; k < Dim; ++k) record.position[k] += place * box.high[k];
+      record.id = all.owned;
+      all.append(record);
+    }
+  }
+  const auto measure = [&](MPI_Comm of, Partitioner partitioner) {
+    Decomposition<Dim> domain(of, box, {}, far_radius, partitioner);
+    EXPECT_GT(domain.cells().count(), 999'000'000'000);
+    Particles<Dim> particles = settled_share(domain, all, of);
+    EXPECT_EQ(sum_over_ranks(of, std::int64_t{particles.owned}), all.owned);
+    EXPECT_LT(domain.imbalance(particles), 1.15);
+    EXPECT_LT(domain.bytes(), 1'000'000);
+    const auto density = densities(Edge::open, domain, particles);
+    return std::array{gather_by_id(of, particles, density[0]), gather_by_id(of, particles, density[1])};
+  };
+  const auto alone = measure(MPI_COMM_SELF, Partitioner::automatic);
+  for (const auto& [id, density] : alone[1]) {
+    if (has_row(all.type[static_cast<std::size_t>(id)])) {
+      EXPECT_GT(density, 0.5);
+    }
+  }
+  for (const Partitioner partitioner : {Partitioner::metis, Partitioner::curve})
+    EXPECT_EQ(measure(comm, partitioner), alone);
+}
+
+// Cells that all particles have left are not remembered for ever.
+TYPED_TEST(Domains, ForgetCellsThatWereLeft) {
+  constexpr int Dim = TypeParam::value;
+  Box<Dim> box;
+  for (int k = 0; k < Dim; ++k) box.high[k] = 1e5;
+  Decomposition<Dim> domain(comm, box, {}, far_radius, Partitioner::curve);
+  const Particles<Dim> everywhere = cloud<Dim>();
+  Particles<Dim> few;
+  for (int i = 0; i < 20; ++i) few.append(everywhere.record(i));
+  Particles<Dim> particles = share_of(few);
+  domain.partition(particles);
+  for (int step = 0; step < 5000; ++step) {
+    for (int i = 0; i < particles.owned; ++i) particles.position[static_cast<std::size_t>(i)][0] += 10.0;
+    EXPECT_EQ(domain.migrate(particles).outside, 0);
+    domain.build_halo(particles);
+  }
+  EXPECT_EQ(sum_over_ranks(comm, std::int64_t{particles.owned}), few.owned);
+  EXPECT_LT(domain.bytes(), 10'000'000);
 }
 
 TYPED_TEST(Domains, CountParticlesThatLeaveTheGrid) {

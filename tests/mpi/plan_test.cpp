@@ -74,6 +74,48 @@ TEST(Plan, IsWhatARunHas) {
   expect_plan_of_this_rank<2>(shipped_case("hydrostatic.toml"), MPI_COMM_SELF);
   expect_plan_of_this_rank<2>(shipped_case("shear-wave.toml"), MPI_COMM_SELF);
   expect_plan_of_this_rank<3>(shipped_case("hydrostatic-3d.toml"), MPI_COMM_SELF);
+  expect_plan_of_this_rank<2>(shipped_case("shear-wave.toml", {"parallel.partitioner=curve"}), MPI_COMM_SELF);
+  expect_plan_of_this_rank<3>(shipped_case("hydrostatic-3d.toml", {"parallel.partitioner=curve"}), MPI_COMM_SELF);
+}
+
+// Nothing is as long as the cells of the domain, and none of it depends on the others.
+TEST(Plan, OfASmallDropInALargeHallIsSmall) {
+  const auto drop = [](const char* domain) {
+    return parse_case({{"case.toml", fmt::format(R"(geometry = "scene"
+dimension = 3
+particles.spacing = 0.01
+time = {{end = 1.0, dt = 1e-3}}
+fluid.region = [{{shape = "sphere", center = [0, 0, 0], radius = 0.05}}]
+domain = {}
+)",
+                                                 domain)}});
+  };
+  const Case hall = drop("{low = [-100, -100, -100], high = [100, 100, 100]}");
+  const Plan plan = plan_run<3>(comm, hall, 3);
+  EXPECT_GT(plan.cells, 100'000'000'000);
+  EXPECT_LT(plan.occupied, 1000);
+  auto simulation = make_simulation<3>(comm, hall);
+  for (int step = 0; step < 3; ++step) simulation.step();
+  EXPECT_LT(simulation.bytes(), 20'000'000);
+  EXPECT_EQ(simulation.report().lost, 0);
+}
+
+// With the same particles everywhere, a cut by the curve is as even as cells can make it.
+TEST(Plan, CurveBalancesAsMetisDoes) {
+  const auto imbalance = [](const char* partitioner) {
+    const Plan plan =
+        plan_run<2>(comm,
+                    shipped_case("hydrostatic.toml",
+                                 {"particles.spacing=1e-3", fmt::format("parallel.partitioner={}", partitioner)}),
+                    40);
+    std::int64_t most = 0, sum = 0;
+    for (const RankPlan& rank : plan.ranks) {
+      most = std::max(most, rank.work);
+      sum += rank.work;
+    }
+    return 40.0 * static_cast<double>(most) / static_cast<double>(sum);
+  };
+  EXPECT_LT(imbalance("curve"), imbalance("metis") + 0.02);
 }
 
 TEST(Plan, IsTheSameOnEveryNumberOfProcesses) { expect_plan_of_this_rank<2>(shipped_case("jet60-quick.toml"), comm); }
@@ -81,7 +123,7 @@ TEST(Plan, IsTheSameOnEveryNumberOfProcesses) { expect_plan_of_this_rank<2>(ship
 TEST(Plan, HoldsEveryParticleOnceWhereRanksAreMany) {
   const Case config = shipped_case("jet60-quick.toml");
   const auto simulation = make_simulation<2>(MPI_COMM_SELF, config);
-  for (const char* partitioner : {"metis", "ptscotch"}) {
+  for (const char* partitioner : {"metis", "ptscotch", "curve"}) {
     for (const int ranks : {1, 16, 1000}) {
       const Plan plan = plan_run<2>(
           comm, shipped_case("jet60-quick.toml", {fmt::format("parallel.partitioner={}", partitioner)}), ranks);

@@ -132,6 +132,7 @@ TEST(Run, EndsWhereFluidLeavesATankIfItIsToldTo) {
 
 TEST(Run, IsThatOfASingleRankWithPTScotch) {
   expect_the_same_run<2>(jet_case({"parallel.partitioner=\"ptscotch\""}), 30);
+  expect_the_same_run<2>(jet_case({"parallel.partitioner=\"curve\""}), 30);
 }
 
 TEST(Run, IsThatOfASingleRankWithTheSingularKernel) {

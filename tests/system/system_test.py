@@ -66,8 +66,12 @@ class CommandLine(System):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn(part, done.stdout)
         self.assertEqual(list(self.directory.iterdir()), [])
-        done = impinge(QUICK, "--plan", "2", "--set", "plate.begin=-2e4", cwd=self.directory)
-        self.assertRegex(done.stderr, r"^impinge: planning 1\d{7} background cells takes some \d s\n$")
+        done = impinge(ROOT / "input/hydrostatic.toml", "--plan", "100", "--set", "particles.spacing=8e-5", cwd=self.directory)
+        self.assertRegex(done.stderr, r"^impinge: planning \de\+06 particles takes some \S+ s\n$")
+        self.assertRegex(done.stdout, r"partition   by curve, .*\nrepartition \d+ sums of 0.792 kB over the ranks\n")
+        hall = ("--set", "plate.begin=-2e6", "--set", "parallel.partitioner=curve")  # 10^9 cells, few with particles
+        done = impinge(QUICK, "--plan", "2", *hall, cwd=self.directory)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
         done = impinge(QUICK, "--check", cwd=self.directory)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bytes per particle", done.stdout)
@@ -154,7 +158,8 @@ class CommandLine(System):
         # What is free here does not bound the plan of a cluster, but for the cells of the case itself.
         self.assertEqual(limited(tank, "--set", "particles.spacing=2e-4", "--plan", "64").returncode, 0)
         for columns in (12500, 37000):  # 12500: the cells alone would fit, the graph that is partitioned does not
-            done = limited(tank, "--set", f"particles.spacing={0.2 / columns!r}", "--plan", "64")
+            done = limited(tank, "--set", f"particles.spacing={0.2 / columns!r}", "--plan", "64",
+                           "--set", "parallel.partitioner=metis")
             self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
             self.assertIn("not enough memory", done.stderr)
         done = limited(tank, "--check")

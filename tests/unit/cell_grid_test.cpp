@@ -54,7 +54,7 @@ TYPED_TEST(CellGrids, DivideTheBoxExactly) {
 
 TYPED_TEST(CellGrids, AreNumberedWithTheLastAxisFastest) {
   const auto grid = this->make(false);
-  const int cell = grid.cell(this->point(1.5, 3.5));  // cell 2, 1 (, 1)
+  const std::int64_t cell = grid.cell(this->point(1.5, 3.5));  // cell 2, 1 (, 1)
   EXPECT_EQ(cell, TestFixture::Dim == 2 ? 2 * 2 + 1 : (2 * 2 + 1) * 2 + 1);
   for (int c = 0; c < grid.count(); ++c) {
     Vector<TestFixture::Dim> shift;

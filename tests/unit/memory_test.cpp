@@ -70,8 +70,8 @@ TEST(Memory, NeedIsRefusedWhereTheCellsAreTooManyToCount) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("particles.spacing = 0.02: makes some 2e+11 background cells; allowed: at "
-                        "most 2147483647"),
+                  .find("particles.spacing = 0.02: makes some 1.7e+09 background cells along an axis; allowed: at "
+                        "most 536870912"),
               std::string::npos)
         << error.what();
   }

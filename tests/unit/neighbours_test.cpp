@@ -137,6 +137,39 @@ TYPED_TEST(Neighbours, AreThoseOfBruteForce) {
   }
 }
 
+// A box around all particles would have some 10^11 cells.
+TYPED_TEST(Neighbours, MayBeFarFromOneAnother) {
+  constexpr int dim = TestFixture::Dim;
+  for (const bool walls_measure : {false, true}) {
+    Box<dim> box;
+    for (int k = 0; k < dim; ++k) box.high[k] = dim == 2 ? 1e6 : 2e4;
+    const auto cells = CellGrid<dim>(box, {}, far_radius).refined(reach);
+    const Particles<dim> cloud = this->cloud();
+    Particles<dim> particles;
+    for (int i = 0; i < cloud.owned; ++i) {
+      auto record = cloud.record(i);
+      for (int k = 0; k < dim; ++k)  // a third on its way along the diagonal, the others in two clouds
+        record.position[k] += i % 3 == 0 ? 30.0 * i : i % 3 == 1 ? 0.9 * box.high[k] : 5.0;
+      particles.append(record);
+    }
+    particles = sorted(cells, particles, [](const auto&) { return true; });
+    NeighbourSearch<dim> found(cells, reach, KernelType::non_singular, near_radius, far_radius, walls_measure);
+    found.search(particles);
+    const auto is_in_row = [](ParticleType type) { return type != ParticleType::wall; };
+    const auto is_fluid = [](ParticleType type) { return type == ParticleType::fluid; };
+    if (walls_measure) {
+      this->template expect_brute_force_pairs<NonSingularKernel>(particles, found.near(), near_radius, this->has_row,
+                                                                 is_in_row);
+      this->template expect_brute_force_pairs<NonSingularKernel>(particles, this->far_of(found), far_radius, is_fluid,
+                                                                 is_in_row);
+    } else {
+      this->template expect_brute_force_pairs<NonSingularKernel>(particles, found.near(), near_radius);
+      this->template expect_brute_force_pairs<NonSingularKernel>(particles, this->far_of(found), far_radius);
+    }
+    EXPECT_LT(found.bytes(), 10'000'000);
+  }
+}
+
 TYPED_TEST(Neighbours, RowsKeepTheirOrderWhoeverOwnsTheParticles) {
   const auto whole = this->all_owned();
   const auto half = this->half_owned();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "impinge/parallel/cell_owners.hpp"
 #include "impinge/particles/particles.hpp"
 
 namespace impinge {
@@ -15,20 +16,20 @@ constexpr std::size_t coarse_stencil = Dim == 2 ? 25 : 125;
 
 /// This rank's rows of the preconditioner's coarse matrix.
 struct CoarseRows {
-  std::vector<std::int64_t> cell;    ///< place of each row's cell among the cells of this rank
+  std::vector<std::int64_t> cell;    ///< each row's cell, ascending
   std::vector<std::int64_t> length;  ///< entries of each row
   std::vector<std::int64_t> column;  ///< global, row after row
   std::vector<double> value;
 };
 
-/// The state between two steps. `owner` and `coarse` are empty where the number of ranks has changed since it was
+/// The state between two steps. `segments` and `coarse` are empty where the number of ranks has changed since it was
 /// saved.
 template <int Dim>
 struct Checkpoint {
   Particles<Dim> particles;                    ///< owned
   std::vector<Vector<Dim>> searched_position;  ///< where they stood when their neighbours were searched [m]
   std::map<std::string, double> numbers;       ///< all that is one number, the same on every rank
-  std::vector<int> owner;                      ///< rank of each background cell, the same on every rank
+  std::vector<Segment> segments;               ///< of the owners of the background cells, the same on every rank
   CoarseRows coarse;
 };
 
@@ -36,6 +37,6 @@ struct Checkpoint {
 /// point to nothing; empty if all is well. `first_node`: number of this rank's first row of the coarse matrix; `nodes`:
 /// rows of all ranks. Not collective.
 template <int Dim>
-std::string problem_of(const Checkpoint<Dim>& state, int rank, int ranks, std::int64_t first_node, std::int64_t nodes);
+std::string problem_of(const Checkpoint<Dim>& state, int ranks, std::int64_t first_node, std::int64_t nodes);
 
 }  // namespace impinge

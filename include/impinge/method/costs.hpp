@@ -9,7 +9,6 @@ namespace impinge {
 struct UnitCosts {
   double particle_memory;  ///< of an owned or halo particle [bytes]
   double row_memory;       ///< of a row of pairs, matrix and interpolation on top of its particle [bytes]
-  double cell_memory;      ///< of a background cell, on every rank [bytes]
   double halo_traffic;     ///< sent per halo particle and step, but for the iterations of the solver [bytes]
 };
 

@@ -4,23 +4,17 @@
 #include <span>
 #include <vector>
 
+#include "impinge/parallel/cell_partition.hpp"
 #include "impinge/parallel/exchange.hpp"
-#include "impinge/parallel/graph_partition.hpp"
-#include "impinge/particles/cell_grid.hpp"
 #include "impinge/particles/particles.hpp"
 
 namespace impinge {
 
-/// Adds the work of every owned particle to the entry of its cell in `work`. Particles outside the cells count for
-/// nothing. Not collective.
-template <int Dim>
-void add_work(const CellGrid<Dim>& cells, const Particles<Dim>& particles, std::span<int> work);
+/// True for a particle with a row of neighbours; others are only seen by these.
+constexpr bool has_row(ParticleType type) { return type == ParticleType::fluid || type == ParticleType::wall; }
 
-/// Part of every cell, 0 to `parts` - 1, that balances `work` (per cell, the same on every rank): k-way on the graph of
-/// occupied cells (METIS on rank 0, or PTScotch on all); empty cells follow the nearest occupied one. Collective.
-template <int Dim>
-std::vector<int> distribute_cells(MPI_Comm comm, const CellGrid<Dim>& cells, std::span<const int> work, int parts,
-                                  Partitioner partitioner);
+/// What `particles` cost a rank, `rows` of them with a row of neighbours.
+constexpr std::int64_t work_of(std::int64_t particles, std::int64_t rows) { return particles + 3 * rows; }
 
 /// A rank that has a cell's particles in its halo, as they are or moved by periods.
 template <int Dim>
@@ -30,9 +24,9 @@ struct HaloTarget {
   friend bool operator==(const HaloTarget&, const HaloTarget&) = default;
 };
 
-/// Appends all that have the particles of `cell` in their halo, each once. `owner`: rank of each cell. Not collective.
+/// Appends all that have the particles of `cell` in their halo, each once. Not collective.
 template <int Dim>
-void append_halo_targets(const CellGrid<Dim>& cells, std::span<const int> owner, int cell,
+void append_halo_targets(const CellGrid<Dim>& cells, const CellOwners<Dim>& owner, std::int64_t cell,
                          std::vector<HaloTarget<Dim>>& targets);
 
 /// Particles of this rank that have no cell.
@@ -42,7 +36,8 @@ struct Strays {
 };
 
 /// Decomposition of the particles over the ranks by background cells whose edge is at least the largest effective
-/// radius. Arrays of global length exist on the cell grid only.
+/// radius. A rank holds arrays over its particles, over cells that have some of them, and over the segments of the
+/// cells' owners; none over all cells.
 template <int Dim>
 class Decomposition {
  public:
@@ -55,7 +50,8 @@ class Decomposition {
     PetscInt row;
   };
 
-  /// `reach`: largest effective radius [m]. Every rank starts with no cell; call partition before migrate. Collective.
+  /// `reach`: largest effective radius [m]. Rank 0 starts with all cells; call partition before migrate. Not
+  /// collective.
   Decomposition(MPI_Comm comm, const Box<Dim>& box, const std::array<bool, Dim>& periodic, double reach,
                 Partitioner partitioner);
 
@@ -63,7 +59,7 @@ class Decomposition {
 
   /// The background cells and the rank of each.
   const CellGrid<Dim>& cells() const { return cells_; }
-  std::span<const int> owners() const { return owner_; }
+  const CellOwners<Dim>& owners() const { return owner_; }
 
   /// How often the cells were distributed.
   int partitions() const { return partitions_; }
@@ -75,14 +71,17 @@ class Decomposition {
   /// distribute_cells). Reads owned positions and types. Collective.
   void partition(const Particles<Dim>& particles);
 
-  /// Assigns the cells as an earlier partition did, `owner`: rank of each cell. Not collective.
-  void set_owners(std::vector<int> owner, double achieved_imbalance);
+  /// Assigns the cells as an earlier partition did. Not collective.
+  void set_owners(Cut cut);
 
   /// Largest over mean work of the ranks. Collective.
   double imbalance(const Particles<Dim>& particles) const;
 
   /// The imbalance right after the last partition.
   double achieved_imbalance() const { return achieved_imbalance_; }
+
+  /// Memory of what is known of cells and ranks [bytes].
+  std::size_t bytes() const;
 
   /// True if the position lies in a cell of this rank.
   bool owns(const Vector<Dim>& position) const;
@@ -105,16 +104,18 @@ class Decomposition {
   std::span<const PetscInt> rows() const { return rows_; }
 
  private:
-  void find_halo_targets();
+  std::size_t place_of_targets(std::int64_t cell);
+  void forget_targets();
   void sort_along_cells(Particles<Dim>& particles) const;
 
   MPI_Comm comm_;
   CellGrid<Dim> cells_;
   CellGrid<Dim> fine_;
   Partitioner partitioner_;
-  std::vector<int> owner_;                // rank of each cell
-  std::vector<int> target_start_;         // per cell: range in targets_
-  std::vector<HaloTarget<Dim>> targets_;  // who sees the particles of a cell of this rank
+  CellOwners<Dim> owner_;
+  CellIndex seen_;                         // cells of this rank whose targets are known
+  std::vector<std::size_t> target_start_;  // of each: range in targets_
+  std::vector<HaloTarget<Dim>> targets_;   // who sees the particles of a cell of this rank
   double achieved_imbalance_ = 1.0;
   int partitions_ = 0;
   Halo halo_;

@@ -1,7 +1,8 @@
 #pragma once
 // Communication patterns. An Exchange moves packed items between ranks; a Halo refreshes copies with it.
 
-#include <array>
+#include <algorithm>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,6 +44,27 @@ class Exchange {
   int n_send_ = 0;
   int n_receive_ = 0;
 };
+
+/// Sends each item to the rank that stands before it, this rank included. Returns what came, by the sender's rank and,
+/// of each, in the order in which it was given. T is copied bytewise. Collective.
+template <class T>
+std::vector<T> exchange_items(MPI_Comm comm, std::span<const std::pair<int, T>> items) {
+  std::vector<std::size_t> order(items.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return items[k].first; });
+  std::vector<std::pair<int, int>> runs;
+  std::vector<T> send;
+  for (const std::size_t k : order) {
+    const auto& [rank, item] = items[k];
+    if (runs.empty() || runs.back().first != rank) runs.emplace_back(rank, 0);
+    ++runs.back().second;
+    send.push_back(item);
+  }
+  const Exchange exchange(comm, runs);
+  std::vector<T> received(static_cast<std::size_t>(exchange.n_receive()));
+  exchange.forward(send.data(), received.data());
+  return received;
+}
 
 /// Refreshes the copies of other ranks' particles (and periodic images) that stand behind the owned ones.
 class Halo {

@@ -1,6 +1,7 @@
 #pragma once
 // One search per step that feeds every operator.
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -111,6 +112,8 @@ class NeighbourSearch {
   std::size_t append_row(double radius, double above, int i, const Vector<Dim>& centre);
   std::size_t append_within(double radius, double above, int i, const Vector<Dim>& centre, std::size_t used);
   void weigh(double radius, std::size_t count, double* weight) const;
+  std::int64_t line_offset(int a, int b) const;
+  const int* starts_around(int cell, int a, int b);
 
   CellGrid<Dim> cells_;
   int reach_;
@@ -119,13 +122,18 @@ class NeighbourSearch {
   double far_radius_;
   bool walls_measure_;
   PairList near_;
-  // Particles in the order of the local cells: a box of cells around all of them, padded by the reach.
+  // Particles in the order of the local cells: those of a box around all particles, padded by the reach, or, where
+  // these are very many, those of them that have particles.
   std::array<int, Dim> box_low_;
   std::array<int, Dim> box_extent_;
-  std::vector<int> box_cell_;  // per particle
+  std::vector<int> local_cell_;  // per particle
   std::vector<int> cell_start_;
-  std::vector<int> entry_;                               // particle of each place in cell order
-  std::vector<int> place_;                               // inverse of entry_
+  std::vector<std::int64_t>
+      occupied_;                 // place in the box of the local cells with particles; empty: all are local cells
+  int lines_of_ = -1;            // local cell whose lines are line_start_
+  std::vector<int> line_start_;  // of the lines of cells around a cell: cell_start_ from -reach to reach + 1
+  std::vector<int> entry_;       // particle of each place in cell order
+  std::vector<int> place_;       // inverse of entry_
   std::array<std::vector<double>, Dim> entry_position_;  // by axis
   std::vector<ParticleType> type_;                       // of the owned particles
   // Of one row.

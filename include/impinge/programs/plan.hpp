@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "impinge/cases/case.hpp"
+#include "impinge/parallel/cell_owners.hpp"
 
 namespace impinge {
 
@@ -24,18 +25,26 @@ struct RankPlan {
   double field_bytes = 0.0;      ///< received when one double per halo particle is refreshed
   double step_bytes = 0.0;       ///< received per step in refreshes of the halo, but for the iterations of the solver
   double iteration_bytes = 0.0;  ///< received per solver iteration, the coarse solver's own traffic excepted; at most
-  double memory = 0.0;           ///< of particles, pair lists, matrix, interpolation and arrays over all cells [bytes]
+  double memory = 0.0;           ///< of particles, pair lists, matrix, interpolation and segments [bytes]
 };
 
 /// The decomposition with which a run on some number of ranks starts.
 struct Plan {
-  std::int64_t cells = 0;     ///< background cells, on every rank
-  std::int64_t occupied = 0;  ///< cells with particles: vertices of the graph that is partitioned
+  std::int64_t cells = 0;     ///< background cells
+  std::int64_t occupied = 0;  ///< cells with particles
+  Partitioner partitioner{};  ///< that distributes them
+  int key_bits = 0;           ///< of a place on the curve: sums over the ranks in which it is cut
+  std::int64_t segments = 0;  ///< of the owners of the cells
+  double cut_seconds = 0.0;   ///< that the distribution took here, on one process [s]
   std::vector<RankPlan> ranks;
+
+  /// What a rank holds that grows with the ranks: the segments twice (decomposition, preconditioner) [bytes].
+  std::int64_t table_bytes() const { return 2 * segments * static_cast<std::int64_t>(sizeof(Segment)); }
 };
 
-/// Decomposes the case's initial particles for `ranks` ranks, whatever the size of `comm`, as a run does: METIS gives
-/// the run's own partition, PTScotch one of its kind. Needs memory for the cells, not for the particles. Collective.
+/// Decomposes the case's initial particles for `ranks` ranks, whatever the size of `comm`, as a run does: METIS
+/// or the curve the run's own partition, PTScotch one of its kind. Needs memory for the cells with particles, on rank
+/// 0. Collective.
 template <int Dim>
 Plan plan_run(MPI_Comm comm, const Case& config, int ranks);
 

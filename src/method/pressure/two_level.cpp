@@ -64,7 +64,7 @@ std::array<double, 1 << Dim> corner_shares(double value, const Vector<Dim>& insi
 
 template <int Dim>
 TwoLevelPreconditioner<Dim>::TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells)
-    : comm_(comm), cells_(cells) {
+    : comm_(comm), cells_(cells), owner_(cells) {
   create_coarse_solver();
 }
 
@@ -90,44 +90,16 @@ void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
 }
 
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::set_owners(std::span<const int> owner) {
-  // Root of a cell: its place among the cells of its rank.
-  std::vector<int> count(static_cast<std::size_t>(ranks_of(comm_)), 0);
-  std::vector<PetscInt> root(owner.size());
-  for (std::size_t cell = 0; cell < owner.size(); ++cell) root[cell] = count[static_cast<std::size_t>(owner[cell])]++;
-  const int self = rank_of(comm_);
-  owned_cells_ = static_cast<std::size_t>(count[static_cast<std::size_t>(self)]);
-
-  node_of_cell_.assign(owner.size(), -1);
-  cell_of_node_.clear();
-  std::vector<PetscSFNode> remote;
-  for (std::size_t cell = 0; cell < owner.size(); ++cell) {
-    if (owner[cell] != self) continue;
-    for_cells_around(cells_, static_cast<int>(cell), node_reach, [&](int near, const Vector<Dim>&) {
-      if (node_of_cell_[static_cast<std::size_t>(near)] >= 0) return;
-      node_of_cell_[static_cast<std::size_t>(near)] = static_cast<int>(cell_of_node_.size());
-      cell_of_node_.push_back(near);
-      remote.push_back({owner[static_cast<std::size_t>(near)], root[static_cast<std::size_t>(near)]});
-    });
-  }
-  petsc_check(PetscSFCreate(comm_, nodes_.address()));
-  petsc_check(PetscSFSetGraph(nodes_, static_cast<PetscInt>(owned_cells_), static_cast<PetscInt>(remote.size()),
-                              nullptr, PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
-  petsc_check(PetscSFSetUp(nodes_));
-  node_of_root_.clear();
-  for (std::size_t cell = 0; cell < owner.size(); ++cell)
-    if (owner[cell] == self) node_of_root_.push_back(node_of_cell_[cell]);
-  root_value_.assign(owned_cells_, 0.0);
-  leaf_value_.assign(cell_of_node_.size() + 1, 0.0);
-  number_.assign(cell_of_node_.size(), -1);
+void TwoLevelPreconditioner<Dim>::set_owners(const CellOwners<Dim>& owners) {
+  owner_ = owners;
   stale_ = true;
 }
 
+// Where cells repeat, the one that repeats there; -1 outside.
 template <int Dim>
-int TwoLevelPreconditioner<Dim>::local_node(const std::array<int, Dim>& coordinates) const {
+std::int64_t TwoLevelPreconditioner<Dim>::cell_at(const std::array<int, Dim>& coordinates) const {
   Vector<Dim> shift;
-  const int cell = cells_.wrapped_cell(coordinates, shift);
-  return cell < 0 ? -1 : node_of_cell_[static_cast<std::size_t>(cell)];
+  return cells_.wrapped_cell(coordinates, shift);
 }
 
 template <int Dim>
@@ -156,12 +128,17 @@ void TwoLevelPreconditioner<Dim>::find_interpolation(std::span<const PressureRol
       patches_.back().last = i + 1;
       continue;
     }
-    Patch patch{i, i + 1, base, {}};
+    patches_.push_back({i, i + 1, base, {}});
+  }
+}
+
+template <int Dim>
+void TwoLevelPreconditioner<Dim>::find_corners() {
+  for (Patch& patch : patches_) {
     for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
-      const int node = local_node(sum<Dim>(base, corner));
-      patch.node[static_cast<std::size_t>(c)] = node < 0 ? cell_of_node_.size() : static_cast<std::size_t>(node);
+      const int node = nodes_.find(cell_at(sum<Dim>(patch.base, corner)));
+      patch.node[static_cast<std::size_t>(c)] = static_cast<std::size_t>(node < 0 ? nodes_.size() : node);
     });
-    patches_.push_back(patch);
   }
 }
 
@@ -174,35 +151,83 @@ typename TwoLevelPreconditioner<Dim>::Corners TwoLevelPreconditioner<Dim>::inter
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::sum_at_roots() {
   std::fill(root_value_.begin(), root_value_.end(), 0.0);
-  petsc_check(PetscSFReduceBegin(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
-  petsc_check(PetscSFReduceEnd(nodes_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  petsc_check(PetscSFReduceBegin(copies_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
+  petsc_check(PetscSFReduceEnd(copies_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
 }
 
-// The cells with enough particles.
+// The cells with enough particles: each rank sends the weights of its particles to the owners of the cells.
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::find_coarse_rows() {
-  std::fill(leaf_value_.begin(), leaf_value_.end(), 0.0);
+  struct CellWeight {
+    std::int64_t cell;
+    double weight;
+  };
+  CellIndex touched;
+  std::vector<double> sums;
+  std::array<std::size_t, corners> number;
   for (const Patch& patch : patches_) {
+    for_cube<Dim>(2, 0, [&](int c, const std::array<int, Dim>& corner) {
+      number[static_cast<std::size_t>(c)] =
+          static_cast<std::size_t>(touched.insert(cell_at(sum<Dim>(patch.base, corner))));
+    });
+    sums.resize(static_cast<std::size_t>(touched.size()), 0.0);
     for (std::size_t i = patch.first; i < patch.last; ++i) {
       const Corners weight = interpolation(i);
-      for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += weight[c];
+      for (std::size_t c = 0; c < corners; ++c) sums[number[c]] += weight[c];
     }
   }
-  sum_at_roots();
-  root_.clear();
-  for (std::size_t k = 0; k < owned_cells_; ++k)
-    if (root_value_[k] >= least_node_weight) root_.push_back(k);
+  std::vector<std::pair<int, CellWeight>> sends;
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (const std::int64_t cell = touched.cell(static_cast<int>(k)); cell >= 0)
+      sends.emplace_back(owner_(cell), CellWeight{cell, sums[k]});
+  CellIndex own;
+  sums.clear();
+  for (const auto& [cell, weight] : exchange_items(comm_, std::span<const std::pair<int, CellWeight>>(sends))) {
+    const auto k = static_cast<std::size_t>(own.insert(cell));
+    if (k == sums.size()) sums.push_back(0.0);
+    sums[k] += weight;
+  }
+  row_cell_.clear();
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (sums[k] >= least_node_weight) row_cell_.push_back(own.cell(static_cast<int>(k)));
+  std::ranges::sort(row_cell_);
 }
 
+// Numbers the rows, and tells them to the owners of the cells around.
 template <int Dim>
-void TwoLevelPreconditioner<Dim>::number_nodes() {
+void TwoLevelPreconditioner<Dim>::connect_nodes() {
+  struct Row {
+    std::int64_t cell;
+    PetscInt number;
+  };
   PetscInt next = 0;
-  const auto n_own = static_cast<PetscInt>(root_.size());
+  const auto n_own = static_cast<PetscInt>(row_cell_.size());
   MPI_Exscan(&n_own, &next, 1, MPIU_INT, MPI_SUM, comm_);
-  std::vector<PetscInt> root_number(owned_cells_, -1);
-  for (const std::size_t k : root_) root_number[k] = next++;
-  petsc_check(PetscSFBcastBegin(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
-  petsc_check(PetscSFBcastEnd(nodes_, MPIU_INT, root_number.data(), number_.data(), MPI_REPLACE));
+  std::vector<std::pair<int, Row>> sends;
+  std::vector<int> users;
+  for (const std::int64_t cell : row_cell_) {
+    users.clear();
+    for_cells_around(cells_, cell, node_reach, [&](std::int64_t near, const Vector<Dim>&) {
+      const int user = owner_(near);
+      if (std::ranges::find(users, user) == users.end()) users.push_back(user);
+    });
+    for (const int user : users) sends.emplace_back(user, Row{cell, next});
+    ++next;
+  }
+  nodes_.clear();
+  number_.clear();
+  for (const auto& [cell, number] : exchange_items(comm_, std::span<const std::pair<int, Row>>(sends))) {
+    nodes_.insert(cell);
+    number_.push_back(number);
+  }
+  PetscLayout rows = nullptr;
+  petsc_check(PetscLayoutCreateFromSizes(comm_, n_own, PETSC_DECIDE, 1, &rows));
+  petsc_check(PetscSFCreate(comm_, copies_.address()));
+  petsc_check(PetscSFSetGraphLayout(copies_, rows, nodes_.size(), nullptr, PETSC_COPY_VALUES, number_.data()));
+  petsc_check(PetscSFSetUp(copies_));
+  petsc_check(PetscLayoutDestroy(&rows));
+  root_value_.assign(row_cell_.size(), 0.0);
+  leaf_value_.assign(number_.size() + 1, 0.0);
 }
 
 template <int Dim>
@@ -241,7 +266,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
     weight[i] = corner_shares(coupling[i], inside);
   }
 
-  std::vector<double> stencil((cell_of_node_.size() + 1) * stencil_size, 0.0);
+  std::vector<double> stencil((number_.size() + 1) * stencil_size, 0.0);
   std::array<Corners, n_cubes> cubes;
   std::array<double, near_size> row;
   std::array<std::array<double, near_size>, corners> product;
@@ -280,33 +305,32 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
   }
 
   // Sums at the roots, in an order that does not change from run to run, and back to all that need the transpose.
-  std::vector<double> sums(owned_cells_ * stencil_size, 0.0);
+  std::vector<double> sums(row_cell_.size() * stencil_size, 0.0);
   MPI_Datatype whole_stencil;
   MPI_Type_contiguous(stencil_size, MPI_DOUBLE, &whole_stencil);
   MPI_Type_commit(&whole_stencil);
-  petsc_check(PetscSFReduceBegin(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
-  petsc_check(PetscSFReduceEnd(nodes_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
-  petsc_check(PetscSFBcastBegin(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
-  petsc_check(PetscSFBcastEnd(nodes_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
+  petsc_check(PetscSFReduceBegin(copies_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  petsc_check(PetscSFReduceEnd(copies_, whole_stencil, stencil.data(), sums.data(), MPI_SUM));
+  petsc_check(PetscSFBcastBegin(copies_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastEnd(copies_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
   MPI_Type_free(&whole_stencil);
 
   create_coarse_matrix();
   std::vector<PetscInt> columns;
   std::vector<double> values;
-  for (const std::size_t root : root_) {
-    const auto node = static_cast<std::size_t>(node_of_root_[root]);
-    const auto centre = cells_.coordinates(cell_of_node_[node]);
+  for (const std::int64_t row_cell : row_cell_) {
+    const auto node = static_cast<std::size_t>(nodes_.find(row_cell));
+    const auto centre = cells_.coordinates(row_cell);
     columns.clear();
     values.clear();
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
-      Vector<Dim> shift;
-      const int cell = cells_.wrapped_cell(sum<Dim>(centre, offset), shift);
-      if (cell < 0 || node_of_cell_[static_cast<std::size_t>(cell)] < 0) return;
-      const auto other = static_cast<std::size_t>(node_of_cell_[static_cast<std::size_t>(cell)]);
+      const int near = nodes_.find(cell_at(sum<Dim>(centre, offset)));
+      if (near < 0) return;
+      const auto other = static_cast<std::size_t>(near);
       const auto there = static_cast<std::size_t>(k);
       const double value =
           stencil[node * stencil_size + there] + stencil[other * stencil_size + stencil_size - 1 - there];
-      if (value == 0.0 || number_[other] < 0) return;
+      if (value == 0.0) return;
       columns.push_back(number_[other]);
       values.push_back(there == stencil_size / 2 ? (1.0 + regularisation) * value : value);
     });
@@ -318,7 +342,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
 
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::create_coarse_matrix() {
-  const auto n_own = static_cast<PetscInt>(root_.size());
+  const auto n_own = static_cast<PetscInt>(row_cell_.size());
   petsc_check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, power(5, Dim), nullptr, power(5, Dim),
                            nullptr, coarse_matrix_.address()));
 }
@@ -341,9 +365,13 @@ void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<con
   coupling_ = matrix.coupling;
   find_interpolation(role, position);
   if (age_ == 1) fresh_iterations_ = iterations;
-  if (stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1) {
+  const bool renews = stale_ || age_ >= oldest || iterations > most_growth * fresh_iterations_ + 1;
+  if (renews) {
     find_coarse_rows();
-    number_nodes();
+    connect_nodes();
+  }
+  find_corners();
+  if (renews) {
     build_coarse_matrix(matrix, role, position, halo);
     stale_ = false;
     age_ = 0;
@@ -356,7 +384,7 @@ template <int Dim>
 CoarseRows TwoLevelPreconditioner<Dim>::coarse_rows() const {
   CoarseRows rows;
   if (age() == 0) return rows;
-  rows.cell.assign(root_.begin(), root_.end());
+  rows.cell = row_cell_;
   PetscInt first = 0, end = 0;
   petsc_check(MatGetOwnershipRange(coarse_matrix_, &first, &end));
   for (PetscInt row = first; row < end; ++row) {
@@ -374,8 +402,8 @@ CoarseRows TwoLevelPreconditioner<Dim>::coarse_rows() const {
 
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations) {
-  root_.assign(rows.cell.begin(), rows.cell.end());
-  number_nodes();
+  row_cell_ = rows.cell;
+  connect_nodes();
   create_coarse_matrix();
   PetscInt row = 0;
   petsc_check(MatGetOwnershipRange(coarse_matrix_, &row, nullptr));
@@ -423,16 +451,15 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 
   double* coarse = nullptr;
   petsc_check(VecGetArray(coarse_residual_, &coarse));
-  for (std::size_t k = 0; k < root_.size(); ++k) coarse[k] = root_value_[root_[k]];
+  std::ranges::copy(root_value_, coarse);
   petsc_check(VecRestoreArray(coarse_residual_, &coarse));
   petsc_check(KSPSolve(coarse_solver_, coarse_residual_, coarse_solution_));
-  std::fill(root_value_.begin(), root_value_.end(), 0.0);
   petsc_check(VecGetArray(coarse_solution_, &coarse));
-  for (std::size_t k = 0; k < root_.size(); ++k) root_value_[root_[k]] = coarse[k];
+  std::copy_n(coarse, root_value_.size(), root_value_.begin());
   petsc_check(VecRestoreArray(coarse_solution_, &coarse));
 
-  petsc_check(PetscSFBcastBegin(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
-  petsc_check(PetscSFBcastEnd(nodes_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastBegin(copies_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  petsc_check(PetscSFBcastEnd(copies_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
   leaf_value_.back() = 0.0;
   for (std::size_t i = 0; i < owned; ++i) z[i] = jacobi_weight * r[i] / diagonal_[i];
   for (const Patch& patch : patches_) {
@@ -450,9 +477,8 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 template <int Dim>
 std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
   return inside_.capacity() * sizeof(Vector<Dim>) + patches_.capacity() * sizeof(Patch) +
-         (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) +
-         (node_of_cell_.capacity() + cell_of_node_.capacity() + node_of_root_.capacity()) * sizeof(int) +
-         number_.capacity() * sizeof(PetscInt) + root_.capacity() * sizeof(std::size_t);
+         (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) + owner_.bytes() + nodes_.bytes() +
+         row_cell_.capacity() * sizeof(std::int64_t) + number_.capacity() * sizeof(PetscInt);
 }
 
 template class TwoLevelPreconditioner<2>;

@@ -8,7 +8,7 @@
 #include "impinge/core/petsc.hpp"
 #include "impinge/method/checkpoint.hpp"
 #include "impinge/method/pressure/solver.hpp"
-#include "impinge/particles/cell_grid.hpp"
+#include "impinge/parallel/cell_owners.hpp"
 
 namespace impinge {
 
@@ -27,8 +27,8 @@ class TwoLevelPreconditioner {
   /// `cells`: background cells whose edge is at least the Laplacian's radius. Collective.
   TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells);
 
-  /// Takes the rank of each cell. Collective.
-  void set_owners(std::span<const int> owner);
+  /// Takes the rank of each cell. Not collective.
+  void set_owners(const CellOwners<Dim>& owners);
 
   /// Makes the next update renew the coarse matrix.
   void expire() { stale_ = true; }
@@ -67,16 +67,17 @@ class TwoLevelPreconditioner {
   struct Patch {
     std::size_t first, last;
     std::array<int, Dim> base;
-    std::array<std::size_t, corners> node;  // local nodes of the corners; one behind all of them where there is none
+    std::array<std::size_t, corners> node;  // local nodes of the corners; one behind all of them where there is no row
   };
 
   void create_coarse_solver();
-  int local_node(const std::array<int, Dim>& coordinates) const;
+  std::int64_t cell_at(const std::array<int, Dim>& coordinates) const;
   std::array<int, Dim> place(const Vector<Dim>& position, Vector<Dim>& inside) const;
   void find_interpolation(std::span<const PressureRole> role, std::span<const Vector<Dim>> position);
   void sum_at_roots();  // leaf_value_ into root_value_
   void find_coarse_rows();
-  void number_nodes();
+  void connect_nodes();
+  void find_corners();
   void create_coarse_matrix();
   void finish_coarse_matrix();
   void build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
@@ -86,18 +87,16 @@ class TwoLevelPreconditioner {
 
   MPI_Comm comm_;
   CellGrid<Dim> cells_;
-  std::vector<int> node_of_cell_;  // local node of a cell, -1 far from this rank
-  std::vector<int> cell_of_node_;
-  std::vector<int> node_of_root_;
-  std::size_t owned_cells_ = 0;
-  PetscForest nodes_;  // roots: the cells of this rank; leaves: the local nodes
+  CellOwners<Dim> owner_;
+  std::vector<std::int64_t> row_cell_;  // cell of each row of A_c on this rank, ascending
+  CellIndex nodes_;                     // the cells with a row, of any rank, near cells of this rank: the local nodes
+  PetscForest copies_;                  // roots: the rows of this rank; leaves: the local nodes
 
   std::span<const double> diagonal_;  // of A, owned rows
   std::span<const double> coupling_;  // likewise
   std::vector<Patch> patches_;        // all unknowns
   std::vector<Vector<Dim>> inside_;   // place of an owned particle between the centres, 0 to 1 along each axis
-  std::vector<PetscInt> number_;      // row of A_c of a local node, -1 for none
-  std::vector<std::size_t> root_;     // root of each row of A_c on this rank
+  std::vector<PetscInt> number_;      // row of A_c of a local node
   std::vector<double> root_value_;
   std::vector<double> leaf_value_;  // of the local nodes, and one behind them that is nobody's
   PetscMatrix coarse_matrix_;
