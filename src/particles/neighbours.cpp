@@ -141,36 +141,30 @@ void NeighbourSearch<Dim>::arrange(const Particles<Dim>& particles) {
   }
 }
 
-// From a cell to the cell a lines on along the first axis and, in space, b along the second.
+// Valid until the next call.
 template <int Dim>
-std::int64_t NeighbourSearch<Dim>::line_offset(int a, int b) const {
-  std::int64_t lines = a;
-  if constexpr (Dim == 3) lines = lines * box_extent_[1] + b;
-  return lines * box_extent_[Dim - 1];
-}
-
-// Where the cells of a line around a local cell begin in entry_: from the one beside it on, to both sides. Valid until
-// the next call.
-template <int Dim>
-const int* NeighbourSearch<Dim>::starts_around(int cell, int a, int b) {
-  if (occupied_.empty()) return cell_start_.data() + cell + line_offset(a, b);
-  const int span = 2 * reach_ + 1, second_reach = Dim == 3 ? reach_ : 0;
+typename NeighbourSearch<Dim>::Lines NeighbourSearch<Dim>::lines_around(int cell) {
+  const std::int64_t second = box_extent_[Dim - 1];
+  const std::int64_t first = Dim == 3 ? box_extent_[1] * second : second;
+  if (occupied_.empty()) return {cell_start_.data() + cell, first, second};
+  const int second_reach = Dim == 3 ? reach_ : 0;
+  const int length = 2 * reach_ + 2;  // of a line with its end
   if (lines_of_ != cell) {
     lines_of_ = cell;
     line_start_.clear();
-    for (int p = -reach_; p <= reach_; ++p) {
-      for (int q = -second_reach; q <= second_reach; ++q) {
-        const std::int64_t centre = occupied_[static_cast<std::size_t>(cell)] + line_offset(p, q);
+    for (int a = -reach_; a <= reach_; ++a) {
+      for (int b = -second_reach; b <= second_reach; ++b) {
+        const std::int64_t centre = occupied_[static_cast<std::size_t>(cell)] + a * first + b * second;
         auto next = std::ranges::lower_bound(occupied_, centre - reach_);
-        for (int layer = -reach_; layer <= reach_ + 1; ++layer) {
-          while (next != occupied_.end() && *next < centre + layer) ++next;
+        for (int c = -reach_; c <= reach_ + 1; ++c) {
+          while (next != occupied_.end() && *next < centre + c) ++next;
           line_start_.push_back(cell_start_[static_cast<std::size_t>(next - occupied_.begin())]);
         }
       }
     }
   }
-  const int line = Dim == 3 ? (a + reach_) * span + b + reach_ : a + reach_;
-  return line_start_.data() + line * (span + 1) + reach_;
+  const int lines = 2 * second_reach + 1;
+  return {line_start_.data() + (reach_ * lines + second_reach) * length + reach_, lines * length, length};
 }
 
 // Appends the particles within a radius of the centre of particle i, whose squares of distances are `above`, to the
@@ -194,7 +188,7 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
   };
   std::array<const double*, Dim> position;
   for (std::size_t k = 0; k < Dim; ++k) position[k] = entry_position_[k].data();
-  const int own_cell = local_cell_[static_cast<std::size_t>(i)];
+  const Lines lines = lines_around(local_cell_[static_cast<std::size_t>(i)]);
   const int second_reach = Dim == 3 ? reach_ : 0;
   for (int a = -reach_; a <= reach_; ++a) {
     for (int b = -second_reach; b <= second_reach; ++b) {
@@ -205,9 +199,9 @@ std::size_t NeighbourSearch<Dim>::append_within(double radius, double above, int
       int from = 0, to = 0;
       while (from > -reach_ && gap2(Dim - 1, from - 1) < rest) --from;
       while (to < reach_ && gap2(Dim - 1, to + 1) < rest) ++to;
-      const int* starts = starts_around(own_cell, a, b);
-      const auto first = static_cast<std::size_t>(starts[from]);
-      const auto last = static_cast<std::size_t>(starts[to + 1]);
+      const int* start = lines.start + a * lines.first + b * lines.second;
+      const auto first = static_cast<std::size_t>(start[from]);
+      const auto last = static_cast<std::size_t>(start[to + 1]);
       if (const std::size_t most = used + (last - first) + lanes; most > index_.size()) {
         index_.resize(2 * most);
         square_.resize(2 * most);

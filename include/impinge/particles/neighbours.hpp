@@ -112,8 +112,13 @@ class NeighbourSearch {
   std::size_t append_row(double radius, double above, int i, const Vector<Dim>& centre);
   std::size_t append_within(double radius, double above, int i, const Vector<Dim>& centre, std::size_t used);
   void weigh(double radius, std::size_t count, double* weight) const;
-  std::int64_t line_offset(int a, int b) const;
-  const int* starts_around(int cell, int a, int b);
+  // Lines of cells along the last axis around a cell: where the places of the cell a lines on along the first axis, in
+  // space b along the second, and c along the line begin is start[a * first + b * second + c].
+  struct Lines {
+    const int* start;
+    std::ptrdiff_t first, second;
+  };
+  Lines lines_around(int cell);
 
   CellGrid<Dim> cells_;
   int reach_;
