@@ -112,9 +112,7 @@ Plan plan_of(const CellGrid<Dim>& cells, std::span<const CellCount> counts, int 
   for (const CellCount& count : counts) work.push_back({count.key, work_of(count.particles, count.rows)});
   Plan plan;
   plan.occupied = static_cast<std::int64_t>(counts.size());
-  const double begin = MPI_Wtime();
   const CellOwners<Dim> owner(cells, distribute_cells<Dim>(MPI_COMM_SELF, cells, work, ranks, partitioner).segments);
-  plan.cut_seconds = MPI_Wtime() - begin;
   work = {};
   plan.segments = static_cast<std::int64_t>(owner.segments().size());
   plan.ranks.resize(static_cast<std::size_t>(ranks));
@@ -154,7 +152,6 @@ Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
   MPI_Bcast(plan.ranks.data(), ranks, rank_plan, 0, comm);
   MPI_Type_free(&rank_plan);
   for (std::int64_t* number : {&plan.occupied, &plan.segments}) MPI_Bcast(number, 1, MPI_INT64_T, 0, comm);
-  MPI_Bcast(&plan.cut_seconds, 1, MPI_DOUBLE, 0, comm);
   double work = 0.0;
   for (const RankPlan& rank : plan.ranks) work += static_cast<double>(rank.work);
   plan.partitioner = chosen_partitioner(config.parallel.partitioner, ranks, work);

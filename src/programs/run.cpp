@@ -207,8 +207,8 @@ void print_plan(const Case& config, const Plan& plan) {
              most_nodes);
   fmt::print("cells       {}, {} of them with particles: {:.1f} of a rank\n", plan.cells, plan.occupied,
              static_cast<double>(plan.occupied) / ranks);
-  fmt::print("partition   by {}, {:.3g} s on one process; {} segments, {:.3g} kB on each rank\n",
-             words(plan.partitioner)[static_cast<std::size_t>(plan.partitioner)], plan.cut_seconds, plan.segments,
+  fmt::print("partition   by {}; {} segments, {:.3g} kB on each rank\n",
+             words(plan.partitioner)[static_cast<std::size_t>(plan.partitioner)], plan.segments,
              static_cast<double>(plan.table_bytes()) / 1e3);
   if (plan.partitioner == Partitioner::curve)
     fmt::print("repartition {} sums of {:.3g} kB over the ranks\n", plan.key_bits,

@@ -68,7 +68,7 @@ class CommandLine(System):
         self.assertEqual(list(self.directory.iterdir()), [])
         done = impinge(ROOT / "input/hydrostatic.toml", "--plan", "100", "--set", "particles.spacing=8e-5", cwd=self.directory)
         self.assertRegex(done.stderr, r"^impinge: planning \S+ particles takes some \S+ s\n$")
-        self.assertRegex(done.stdout, r"partition   by curve, .*\nrepartition \d+ sums of 0.792 kB over the ranks\n")
+        self.assertRegex(done.stdout, r"partition   by curve; .*\nrepartition \d+ sums of 0.792 kB over the ranks\n")
         hall = ("--set", "plate.begin=-2e4", "--set", "parallel.partitioner=curve")  # 10^7 cells, few with particles
         done = impinge(QUICK, "--plan", "2", *hall, cwd=self.directory)
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -35,7 +35,6 @@ struct Plan {
   Partitioner partitioner{};  ///< that distributes them
   int key_bits = 0;           ///< of a place on the curve: sums over the ranks in which it is cut
   std::int64_t segments = 0;  ///< of the owners of the cells
-  double cut_seconds = 0.0;   ///< that the distribution took here, on one process [s]
   std::vector<RankPlan> ranks;
 
   /// What a rank holds that grows with the ranks: the segments twice (decomposition, preconditioner) [bytes].
