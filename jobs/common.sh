@@ -36,6 +36,9 @@ resolutions_of() {
 # quotient A B: A / B, to 15 digits
 quotient() { awk "BEGIN {printf \"%.15g\", $1 / $2}"; }
 
+# product A B: A B, likewise
+product() { awk "BEGIN {printf \"%.15g\", $1 * $2}"; }
+
 # measure_jet RANKS DIR CASE [WORD...]: runs a jet into DIR and validates it, unless it is finished there. A run that
 # diverges is a result, too.
 measure_jet() {

@@ -2,8 +2,9 @@
 """Prints the counts of all series below a directory as Markdown tables. Usage: scaling.py DIR
 
 Messages, bytes, reductions and other collective operations: sent per rank and step, mean over the ranks (largest of a
-rank in parentheses), of the runs' own MPI calls; hypre's messages are those that PETSc's -log_view does not count. Iterations: mean (largest) over the steps 2 to 11; of the first, cold step.
-Halo: copies over owned particles, mean (worst rank). Neighbours: mean (most).
+rank in parentheses), of the runs' own MPI calls; hypre's messages are those that PETSc's -log_view does not count. Per
+step: the second run's count less the first's, over the steps that it has more. Iterations: mean (largest) over these
+steps; of the first, cold step. Halo: copies over owned particles, mean (worst rank). Neighbours: mean (most).
 """
 
 import csv
@@ -11,7 +12,7 @@ import pathlib
 import re
 import sys
 
-STEPS = (1, 11)
+PARTS = ("first", "second")
 
 
 def read_csv(path):
@@ -25,27 +26,29 @@ def read_row(directory, ranks):
     def planned(pattern):
         return [float(number) for number in re.search(pattern, plan).groups()]
 
-    first, last = (read_csv(directory / f"counts-{steps}.csv") for steps in STEPS)
+    iterations = []
+    for part in PARTS:
+        (history,) = (directory / f"run-{part}").glob("*_history.csv")
+        iterations.append([int(row["iterations"]) for row in read_csv(history)])
+    counted = iterations[1][len(iterations[0]) :]
+    if len(counted) < 5:
+        sys.exit(f"{sys.argv[0]}: the second run in {directory} has only {len(counted)} steps more than the first")
+    first, last = (read_csv(directory / f"counts-{part}.csv") for part in PARTS)
 
     def per_step(name, scale=1.0):
-        of_rank = [(float(b[name]) - float(a[name])) / (STEPS[1] - STEPS[0]) / scale for a, b in zip(first, last)]
+        of_rank = [(float(b[name]) - float(a[name])) / len(counted) / scale for a, b in zip(first, last)]
         return sum(of_rank) / ranks, max(of_rank)
 
-    def petsc_messages(steps):
-        text = (directory / f"petsc-{steps}.txt").read_text()
+    def petsc_messages(part):
+        text = (directory / f"petsc-{part}.txt").read_text()
         return float(re.search(r"MPI Msg Count: .* (\S+)\n", text).group(1))
 
     messages = per_step("messages")
-    hypre = messages[0] - (petsc_messages(STEPS[1]) - petsc_messages(STEPS[0])) / (STEPS[1] - STEPS[0]) / ranks
+    hypre = messages[0] - (petsc_messages(PARTS[1]) - petsc_messages(PARTS[0])) / len(counted) / ranks
 
     def both(values, digits):
         return "{:.{d}f} ({:.{d}f})".format(*values, d=digits)
 
-    (history,) = (directory / f"run-{STEPS[1]}").glob("*_history.csv")
-    iterations = [int(row["iterations"]) for row in read_csv(history)]
-    if len(iterations) != STEPS[1]:
-        sys.exit(f"{sys.argv[0]}: {history} has {len(iterations)} steps instead of {STEPS[1]}")
-    warm = iterations[1:]
     particles = planned(r"mean ([\d.]+), most \d+, (\d+) in all")
     return {
         "ranks": str(ranks),
@@ -54,8 +57,8 @@ def read_row(directory, ranks):
         "imbalance": f"{planned(r'imbalance +([0-9.]+)')[0]:.3f}",
         "halo": both(planned(r"over owned: mean ([\d.]+), worst ([\d.]+)"), 3),
         "neighbours": both(planned(r"neighbours +mean ([\d.]+), most (\d+)"), 1),
-        "iterations": both((sum(warm) / len(warm), max(warm)), 1),
-        "cold": str(iterations[0]),
+        "iterations": both((sum(counted) / len(counted), max(counted)), 1),
+        "cold": str(iterations[1][0]),
         "messages": both(messages, 0),
         "of these hypre": f"{hypre:.0f}",
         "kB": both(per_step("bytes", 1e3), 0),
@@ -68,7 +71,7 @@ def main():
     series = {}
     for directory in pathlib.Path(sys.argv[1]).glob("*-*/"):
         name, ranks = directory.name.rsplit("-", 1)
-        if (directory / f"counts-{STEPS[1]}.csv").exists():
+        if (directory / f"counts-{PARTS[1]}.csv").exists():
             series.setdefault(name, []).append(int(ranks))
     if not series:
         sys.exit(f"{sys.argv[0]}: no counts below {sys.argv[1]}")
