@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impinge/core/communicator.hpp"
 #include "impinge/core/errors.hpp"
 #include "impinge/core/memory.hpp"
 #include "impinge/method/costs.hpp"
@@ -67,24 +68,18 @@ double graph_of(const Counts& counts, const Case& config, int ranks) {
   return occupied_cells<Dim>(counts.particles, config) * graph_memory(static_cast<int>(std::pow(3.0, Dim)) - 1);
 }
 
-/// Ranks of one node.
-class Node {
- public:
-  explicit Node(MPI_Comm comm) { MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm_); }
-  Node(const Node&) = delete;
-  Node& operator=(const Node&) = delete;
-  ~Node() { MPI_Comm_free(&comm_); }
-  MPI_Comm comm() const { return comm_; }
-
- private:
-  MPI_Comm comm_ = MPI_COMM_NULL;
-};
+/// The ranks of this node. Collective.
+Communicator ranks_of_node(MPI_Comm comm) {
+  MPI_Comm node = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  return Communicator(node);
+}
 
 /// What the ranks need over what is free, of the rank or the node where that is most; `need`: of this rank [bytes].
 /// Collective.
 double load(MPI_Comm comm, double need) {
-  const Node node(comm);
-  const double of_node = sum_over_ranks(node.comm(), need) / free_memory_of_node();
+  const Communicator node = ranks_of_node(comm);
+  const double of_node = sum_over_ranks(node, need) / free_memory_of_node();
   return max_over_ranks(comm, std::max(of_node, need / free_memory_of_process()));
 }
 
@@ -115,8 +110,8 @@ MemoryNeed memory_need(const Case& config, int ranks, std::int64_t particles) {
 }
 
 double free_memory(MPI_Comm comm) {
-  const Node node(comm);
-  const double share = free_memory_of_node() / ranks_of(node.comm());
+  const Communicator node = ranks_of_node(comm);
+  const double share = free_memory_of_node() / ranks_of(node);
   return -max_over_ranks(comm, -std::min(share, free_memory_of_process()));
 }
 

@@ -13,22 +13,13 @@
 #include "impinge/core/mpi.hpp"
 #include "impinge/parallel/decomposition.hpp"
 #include "impinge/particles/kernel.hpp"
+#include "options.hpp"
 
 namespace impinge {
 namespace {
 
 constexpr double radius = 4.01;
 constexpr double edge = 1.001 * radius;  // of a background cell
-
-/// The option of the database while it lives.
-class Option {
- public:
-  Option(const char* name, const char* value) : name_(name) { petsc_check(PetscOptionsSetValue(nullptr, name, value)); }
-  ~Option() { PetscOptionsClearValue(nullptr, name_); }
-
- private:
-  const char* name_;
-};
 
 /// An irregular cloud of unit spacing between the centres of the outermost background cells.
 template <int Dim>

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <string>
 
 namespace impinge {
 namespace {
@@ -64,30 +62,7 @@ std::array<double, 1 << Dim> corner_shares(double value, const Vector<Dim>& insi
 
 template <int Dim>
 TwoLevelPreconditioner<Dim>::TwoLevelPreconditioner(MPI_Comm comm, const CellGrid<Dim>& cells)
-    : comm_(comm), cells_(cells), owner_(cells) {
-  create_coarse_solver();
-}
-
-template <int Dim>
-void TwoLevelPreconditioner<Dim>::create_coarse_solver() {
-  petsc_check(KSPCreate(comm_, coarse_solver_.address()));
-  petsc_check(KSPSetOptionsPrefix(coarse_solver_, "ppe_coarse_"));
-  petsc_check(KSPSetType(coarse_solver_, KSPPREONLY));
-  PC preconditioner;
-  petsc_check(KSPGetPC(coarse_solver_, &preconditioner));
-  petsc_check(PCSetType(preconditioner, PCHYPRE));
-  // BoomerAMG's own smoother, Jacobi between ranks, is indefinite where few particles tie nodes of two ranks together.
-  // In 3D the levels fill: aggressive coarsening, with a stronger smoother, takes as many iterations and less time.
-  std::vector<std::string> preferred;
-  const auto prefer = [&](const std::string& name, const char* value) {
-    const std::string option = "-ppe_coarse_pc_hypre_boomeramg_" + name;
-    if (set_default_option(option, value)) preferred.push_back(option);
-  };
-  prefer("relax_type_all", Dim == 3 ? "l1scaled-SOR/Jacobi" : "l1scaled-Jacobi");
-  if (Dim == 3) prefer("agg_nl", "1");
-  petsc_check(KSPSetFromOptions(coarse_solver_));
-  for (const std::string& option : preferred) petsc_check(PetscOptionsClearValue(nullptr, option.c_str()));
-}
+    : comm_(comm), cells_(cells), owner_(cells), coarse_solver_(comm, Dim) {}
 
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::set_owners(const CellOwners<Dim>& owners) {
@@ -148,13 +123,6 @@ typename TwoLevelPreconditioner<Dim>::Corners TwoLevelPreconditioner<Dim>::inter
   return corner_shares(coupling_[i], inside_[i]);
 }
 
-template <int Dim>
-void TwoLevelPreconditioner<Dim>::sum_at_roots() {
-  std::fill(root_value_.begin(), root_value_.end(), 0.0);
-  petsc_check(PetscSFReduceBegin(copies_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
-  petsc_check(PetscSFReduceEnd(copies_, MPI_DOUBLE, leaf_value_.data(), root_value_.data(), MPI_SUM));
-}
-
 // The cells with enough particles: each rank sends the weights of its particles to the owners of the cells.
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::find_coarse_rows() {
@@ -187,10 +155,10 @@ void TwoLevelPreconditioner<Dim>::find_coarse_rows() {
     if (k == sums.size()) sums.push_back(0.0);
     sums[k] += weight;
   }
-  row_cell_.clear();
+  coarse_rows_.cell.clear();
   for (std::size_t k = 0; k < sums.size(); ++k)
-    if (sums[k] >= least_node_weight) row_cell_.push_back(own.cell(static_cast<int>(k)));
-  std::ranges::sort(row_cell_);
+    if (sums[k] >= least_node_weight) coarse_rows_.cell.push_back(own.cell(static_cast<int>(k)));
+  std::ranges::sort(coarse_rows_.cell);
 }
 
 // Numbers the rows, and tells them to the owners of the cells around.
@@ -201,11 +169,11 @@ void TwoLevelPreconditioner<Dim>::connect_nodes() {
     PetscInt number;
   };
   PetscInt next = 0;
-  const auto n_own = static_cast<PetscInt>(row_cell_.size());
+  const auto n_own = static_cast<PetscInt>(coarse_rows_.cell.size());
   MPI_Exscan(&n_own, &next, 1, MPIU_INT, MPI_SUM, comm_);
   std::vector<std::pair<int, Row>> sends;
   std::vector<int> users;
-  for (const std::int64_t cell : row_cell_) {
+  for (const std::int64_t cell : coarse_rows_.cell) {
     users.clear();
     for_cells_around(cells_, cell, node_reach, [&](std::int64_t near, const Vector<Dim>&) {
       const int user = owner_(near);
@@ -226,7 +194,6 @@ void TwoLevelPreconditioner<Dim>::connect_nodes() {
   petsc_check(PetscSFSetGraphLayout(copies_, rows, nodes_.size(), nullptr, PETSC_COPY_VALUES, number_.data()));
   petsc_check(PetscSFSetUp(copies_));
   petsc_check(PetscLayoutDestroy(&rows));
-  root_value_.assign(row_cell_.size(), 0.0);
   leaf_value_.assign(number_.size() + 1, 0.0);
 }
 
@@ -305,7 +272,7 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
   }
 
   // Sums at the roots, in an order that does not change from run to run, and back to all that need the transpose.
-  std::vector<double> sums(row_cell_.size() * stencil_size, 0.0);
+  std::vector<double> sums(coarse_rows_.cell.size() * stencil_size, 0.0);
   MPI_Datatype whole_stencil;
   MPI_Type_contiguous(stencil_size, MPI_DOUBLE, &whole_stencil);
   MPI_Type_commit(&whole_stencil);
@@ -315,14 +282,13 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
   petsc_check(PetscSFBcastEnd(copies_, whole_stencil, sums.data(), stencil.data(), MPI_REPLACE));
   MPI_Type_free(&whole_stencil);
 
-  create_coarse_matrix();
-  std::vector<PetscInt> columns;
-  std::vector<double> values;
-  for (const std::int64_t row_cell : row_cell_) {
+  coarse_rows_.length.clear();
+  coarse_rows_.column.clear();
+  coarse_rows_.value.clear();
+  for (const std::int64_t row_cell : coarse_rows_.cell) {
     const auto node = static_cast<std::size_t>(nodes_.find(row_cell));
     const auto centre = cells_.coordinates(row_cell);
-    columns.clear();
-    values.clear();
+    const std::size_t before = coarse_rows_.column.size();
     for_cube<Dim>(5, -2, [&](int k, const std::array<int, Dim>& offset) {
       const int near = nodes_.find(cell_at(sum<Dim>(centre, offset)));
       if (near < 0) return;
@@ -331,31 +297,12 @@ void TwoLevelPreconditioner<Dim>::build_coarse_matrix(const MatrixRows& matrix, 
       const double value =
           stencil[node * stencil_size + there] + stencil[other * stencil_size + stencil_size - 1 - there];
       if (value == 0.0) return;
-      columns.push_back(number_[other]);
-      values.push_back(there == stencil_size / 2 ? (1.0 + regularisation) * value : value);
+      coarse_rows_.column.push_back(number_[other]);
+      coarse_rows_.value.push_back(there == stencil_size / 2 ? (1.0 + regularisation) * value : value);
     });
-    petsc_check(MatSetValues(coarse_matrix_, 1, &number_[node], static_cast<PetscInt>(columns.size()), columns.data(),
-                             values.data(), ADD_VALUES));
+    coarse_rows_.length.push_back(static_cast<std::int64_t>(coarse_rows_.column.size() - before));
   }
-  finish_coarse_matrix();
-}
-
-template <int Dim>
-void TwoLevelPreconditioner<Dim>::create_coarse_matrix() {
-  const auto n_own = static_cast<PetscInt>(row_cell_.size());
-  petsc_check(MatCreateAIJ(comm_, n_own, n_own, PETSC_DETERMINE, PETSC_DETERMINE, power(5, Dim), nullptr, power(5, Dim),
-                           nullptr, coarse_matrix_.address()));
-}
-
-template <int Dim>
-void TwoLevelPreconditioner<Dim>::finish_coarse_matrix() {
-  petsc_check(MatAssemblyBegin(coarse_matrix_, MAT_FINAL_ASSEMBLY));
-  petsc_check(MatAssemblyEnd(coarse_matrix_, MAT_FINAL_ASSEMBLY));
-  petsc_check(MatSetOption(coarse_matrix_, MAT_SPD, PETSC_TRUE));
-  petsc_check(MatCreateVecs(coarse_matrix_, coarse_solution_.address(), coarse_residual_.address()));
-  create_coarse_solver();
-  petsc_check(KSPSetOperators(coarse_solver_, coarse_matrix_, coarse_matrix_));
-  petsc_check(KSPSetUp(coarse_solver_));
+  coarse_solver_.set_up(coarse_rows_, number_);
 }
 
 template <int Dim>
@@ -382,40 +329,14 @@ void TwoLevelPreconditioner<Dim>::update(const MatrixRows& matrix, std::span<con
 
 template <int Dim>
 CoarseRows TwoLevelPreconditioner<Dim>::coarse_rows() const {
-  CoarseRows rows;
-  if (age() == 0) return rows;
-  rows.cell = row_cell_;
-  PetscInt first = 0, end = 0;
-  petsc_check(MatGetOwnershipRange(coarse_matrix_, &first, &end));
-  for (PetscInt row = first; row < end; ++row) {
-    PetscInt length = 0;
-    const PetscInt* columns = nullptr;
-    const double* values = nullptr;
-    petsc_check(MatGetRow(coarse_matrix_, row, &length, &columns, &values));
-    rows.length.push_back(length);
-    rows.column.insert(rows.column.end(), columns, columns + length);
-    rows.value.insert(rows.value.end(), values, values + length);
-    petsc_check(MatRestoreRow(coarse_matrix_, row, &length, &columns, &values));
-  }
-  return rows;
+  return age() == 0 ? CoarseRows{} : coarse_rows_;
 }
 
 template <int Dim>
 void TwoLevelPreconditioner<Dim>::set_coarse_rows(const CoarseRows& rows, int age, int fresh_iterations) {
-  row_cell_ = rows.cell;
+  coarse_rows_ = rows;
   connect_nodes();
-  create_coarse_matrix();
-  PetscInt row = 0;
-  petsc_check(MatGetOwnershipRange(coarse_matrix_, &row, nullptr));
-  const std::vector<PetscInt> columns(rows.column.begin(), rows.column.end());
-  std::size_t entry = 0;
-  for (const std::int64_t length : rows.length) {
-    petsc_check(MatSetValues(coarse_matrix_, 1, &row, static_cast<PetscInt>(length), &columns[entry],
-                             &rows.value[entry], INSERT_VALUES));
-    entry += static_cast<std::size_t>(length);
-    ++row;
-  }
-  finish_coarse_matrix();
+  coarse_solver_.set_up(coarse_rows_, number_);
   stale_ = false;
   age_ = age;
   fresh_iterations_ = fresh_iterations;
@@ -447,19 +368,7 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
     }
     for (std::size_t c = 0; c < corners; ++c) leaf_value_[patch.node[c]] += sum[c];
   }
-  sum_at_roots();
-
-  double* coarse = nullptr;
-  petsc_check(VecGetArray(coarse_residual_, &coarse));
-  std::ranges::copy(root_value_, coarse);
-  petsc_check(VecRestoreArray(coarse_residual_, &coarse));
-  petsc_check(KSPSolve(coarse_solver_, coarse_residual_, coarse_solution_));
-  petsc_check(VecGetArray(coarse_solution_, &coarse));
-  std::copy_n(coarse, root_value_.size(), root_value_.begin());
-  petsc_check(VecRestoreArray(coarse_solution_, &coarse));
-
-  petsc_check(PetscSFBcastBegin(copies_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
-  petsc_check(PetscSFBcastEnd(copies_, MPI_DOUBLE, root_value_.data(), leaf_value_.data(), MPI_REPLACE));
+  coarse_solver_.solve(std::span(leaf_value_).first(number_.size()));
   leaf_value_.back() = 0.0;
   for (std::size_t i = 0; i < owned; ++i) z[i] = jacobi_weight * r[i] / diagonal_[i];
   for (const Patch& patch : patches_) {
@@ -477,8 +386,10 @@ void TwoLevelPreconditioner<Dim>::apply(::Vec residual, ::Vec result) {
 template <int Dim>
 std::size_t TwoLevelPreconditioner<Dim>::bytes() const {
   return inside_.capacity() * sizeof(Vector<Dim>) + patches_.capacity() * sizeof(Patch) +
-         (root_value_.capacity() + leaf_value_.capacity()) * sizeof(double) + owner_.bytes() + nodes_.bytes() +
-         row_cell_.capacity() * sizeof(std::int64_t) + number_.capacity() * sizeof(PetscInt);
+         leaf_value_.capacity() * sizeof(double) + owner_.bytes() + nodes_.bytes() +
+         number_.capacity() * sizeof(PetscInt) + coarse_rows_.column.capacity() * sizeof(std::int64_t) +
+         coarse_rows_.value.capacity() * sizeof(double) +
+         (coarse_rows_.cell.capacity() + coarse_rows_.length.capacity()) * sizeof(std::int64_t);
 }
 
 template class TwoLevelPreconditioner<2>;

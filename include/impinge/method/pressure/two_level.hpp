@@ -7,6 +7,7 @@
 
 #include "impinge/core/petsc.hpp"
 #include "impinge/method/checkpoint.hpp"
+#include "impinge/method/pressure/coarse_solver.hpp"
 #include "impinge/method/pressure/solver.hpp"
 #include "impinge/parallel/cell_owners.hpp"
 
@@ -15,8 +16,8 @@ namespace impinge {
 /// z = w D^-1 r + P A_c^-1 P^T r, symmetric and positive definite as A is. One Jacobi sweep damps all that is shorter
 /// than the wide kernel; the rest lives on the centres of the background cells. P: (bi, tri)linear interpolation from
 /// the cells to the unknown particles, times the row's coupling, which makes it fall to zero where p = 0 is near, as a
-/// sweep of Jacobi on the constants would; A_c = P^T A P; A_c^-1: one cycle of an algebraic multigrid, a KSP of prefix
-/// `ppe_coarse_`. P is that of the current positions; A_c is kept until iterations grow.
+/// sweep of Jacobi on the constants would; A_c = P^T A P; A_c^-1: see CoarseSolver. P is that of the current positions;
+/// A_c is kept until iterations grow.
 template <int Dim>
 class TwoLevelPreconditioner {
  public:
@@ -70,16 +71,12 @@ class TwoLevelPreconditioner {
     std::array<std::size_t, corners> node;  // local nodes of the corners; one behind all of them where there is no row
   };
 
-  void create_coarse_solver();
   std::int64_t cell_at(const std::array<int, Dim>& coordinates) const;
   std::array<int, Dim> place(const Vector<Dim>& position, Vector<Dim>& inside) const;
   void find_interpolation(std::span<const PressureRole> role, std::span<const Vector<Dim>> position);
-  void sum_at_roots();  // leaf_value_ into root_value_
   void find_coarse_rows();
   void connect_nodes();
   void find_corners();
-  void create_coarse_matrix();
-  void finish_coarse_matrix();
   void build_coarse_matrix(const MatrixRows& matrix, std::span<const PressureRole> role,
                            std::span<const Vector<Dim>> position, const Halo& halo);
   Corners interpolation(std::size_t i) const;
@@ -88,21 +85,17 @@ class TwoLevelPreconditioner {
   MPI_Comm comm_;
   CellGrid<Dim> cells_;
   CellOwners<Dim> owner_;
-  std::vector<std::int64_t> row_cell_;  // cell of each row of A_c on this rank, ascending
-  CellIndex nodes_;                     // the cells with a row, of any rank, near cells of this rank: the local nodes
-  PetscForest copies_;                  // roots: the rows of this rank; leaves: the local nodes
+  CellIndex nodes_;     // the cells with a row, of any rank, near cells of this rank: the local nodes
+  PetscForest copies_;  // roots: the rows of this rank; leaves: the local nodes
 
   std::span<const double> diagonal_;  // of A, owned rows
   std::span<const double> coupling_;  // likewise
   std::vector<Patch> patches_;        // all unknowns
   std::vector<Vector<Dim>> inside_;   // place of an owned particle between the centres, 0 to 1 along each axis
   std::vector<PetscInt> number_;      // row of A_c of a local node
-  std::vector<double> root_value_;
-  std::vector<double> leaf_value_;  // of the local nodes, and one behind them that is nobody's
-  PetscMatrix coarse_matrix_;
-  PetscSolver coarse_solver_;
-  PetscVector coarse_residual_;
-  PetscVector coarse_solution_;
+  std::vector<double> leaf_value_;    // of the local nodes, and one behind them that is nobody's
+  CoarseRows coarse_rows_;            // of this rank
+  CoarseSolver coarse_solver_;
 
   bool stale_ = true;
   int builds_ = 0;
