@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Compares runs of the dam break against a column with the experiment: the force on the column."""
+"""Compares runs of the dam break against a column with the experiment: the force on the column.
+
+--data FILE: the measured series, columns series, t, value; that of the force [s, N] has the word F."""
 
 import pathlib
 import sys
@@ -27,23 +29,36 @@ def force(run):
     return t - t[(f > 2.0).argmax()], f
 
 
-def rows(run):
+def measurements(data):
+    """The measured force by the time since it passes 2 N: of the table above, or that of `data`."""
+    if not data:
+        return FORCE
+    t, f = data.of(("t", "value"), series="F").T
+    return np.stack([t - t[(f > 2.0).argmax()], f], 1)
+
+
+def rows(run, data):
     t, f = force(run)
     plateau = (t > 0.15) & (t < 0.25)
+    measured = measurements(data)
+    use = (measured[:, 0] >= 0) & (measured[:, 0] <= t[-1])
+    difference = np.interp(measured[use, 0], t, f) - measured[use, 1]
     kinetic = run.history["kinetic_energy"]
     return [
         c.row("first peak of the force [N], mean over dp/sqrt(2 g h)", f[(t > 0) & (t < 0.15)].max(), PEAK, source=SOURCE),
         c.row("plateau, 0.15 to 0.25 s behind its beginning [N]", f[plateau].mean(), PLATEAU, source=SOURCE),
+        c.row(f"force, mean error to {measured[use, 0].max():.2g} s, over its first peak", np.abs(difference).mean(), 0.0,
+              scale=PEAK, source=SOURCE),
         c.row("largest rise of the kinetic energy in a step, over itself", (kinetic[50:] / kinetic[49:-1]).max() - 1, 0.0,
               scale=1.0),
     ]
 
 
-def draw(runs, figure):
+def draw(runs, figure, data):
     axes = figure.subplots()
     for run, colour in zip(runs, c.COLOURS):
         axes.plot(*force(run), lw=0.8, color=colour, label=c.label(run, SIZE))
-    axes.plot(*FORCE.T, "ko", ms=4, label="measured")
+    axes.plot(*measurements(data).T, "ko", ms=2 if data else 4, label="measured")
     axes.set(title="force on the column [N]", xlabel="t since the bore meets the column [s]", xlim=(-0.1, 1.7), ylim=(-25, 60))
     axes.legend()
 
@@ -51,4 +66,4 @@ def draw(runs, figure):
 SIZE = ("width of the column/dp", WIDTH)
 
 if __name__ == "__main__":
-    c.main(__doc__, rows, draw, SIZE)
+    c.main(__doc__, rows, draw, SIZE, "the measured series: series, t, value")

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Compares runs of the collapsing column with the experiment and with the first MPS code: the front on the floor.
 
---data FILE draws outlines of the experiment, columns t, x, z [s, m, m], over snapshots."""
+--data FILE: the measured front, columns series, T, Z, of the series whose word begins with "experiment"; or outlines of the
+experiment, columns t, x, z [s, m, m], which are drawn over snapshots."""
 
 import pathlib
 import sys
@@ -37,20 +38,26 @@ def front(run):
     return run.gauges["t"] * np.sqrt(2 * 9.81 / L), run.gauges["front"] / L
 
 
-def shift(t, z):
+def measurements(data):
+    """The measured front in T: of the table above, or that of `data`, if it has one."""
+    return data.of(("T", "Z"), series="experiment") if data and "Z" in data else FRONT
+
+
+def shift(t, z, measured):
     """The shift of the clock for which the front differs least, by the mean of its relative error; and that error."""
     shifts = np.linspace(-LARGEST_SHIFT, LARGEST_SHIFT, 141)
-    errors = [np.abs(np.interp(FRONT[:, 0] - s, t, z) / FRONT[:, 1] - 1).mean() for s in shifts]
+    errors = [np.abs(np.interp(measured[:, 0] - s, t, z) / measured[:, 1] - 1).mean() for s in shifts]
     return shifts[np.argmin(errors)], min(errors)
 
 
-def rows(run, _):
+def rows(run, data):
     t, z = front(run)
-    lag, error = shift(t, z)
+    measured = measurements(data)
+    lag, error = shift(t, z, measured)
     lines = [c.row("front, mean error, clock shifted", error, 0.0, scale=1.0, source=SOURCE),
              c.row("shift of the clock in T", lag)]
     for when, (mps, vof) in LEADS.items():
-        ahead = np.interp(when, t, z) - np.interp(when, *FRONT.T)
+        ahead = np.interp(when, t, z) - np.interp(when, *measured.T)
         lines.append(c.row(f"lead of the front over the measured, T = {when:.4g}, over L", ahead, (0.0, mps), scale=1.0,
                            beat=f"first MPS {mps:.2f}, SOLA-VOF {vof:.2f}", source=SOURCE))
     return lines
@@ -62,7 +69,7 @@ def draw(runs, figure, data):
     for run, colour in zip(runs, c.COLOURS):
         t, z = front(run)
         curve.plot(t, z, color=colour, label=c.label(run, SIZE))
-    curve.plot(*FRONT.T, "ko", ms=4, label="measured")
+    curve.plot(*measurements(data).T, "ko", ms=4, label="measured")
     at = np.array(list(LEADS))
     curve.plot(at, np.interp(at, *FRONT.T) + np.array(list(LEADS.values()))[:, 0], "k+", label="first MPS code")
     curve.set(title="front / L", xlabel="t sqrt(2g/L)", xlim=(0, 3.3), ylim=(0.9, 4.1))
@@ -71,7 +78,7 @@ def draw(runs, figure, data):
     for k, (when, outline) in enumerate(OUTLINES.items()):
         axes = figure.add_subplot(grid[k // 2, 1 + k % 2])
         c.show_fluid(axes, run.snapshot(time=when), run.spacing, color="tab:cyan")
-        if data:
+        if data and "z" in data:
             use = np.abs(data["t"] - when) < 1e-6
             axes.plot(data["x"][use], data["z"][use], "k.", ms=2)
         else:
@@ -82,4 +89,4 @@ def draw(runs, figure, data):
 SIZE = ("L/dp", L)
 
 if __name__ == "__main__":
-    c.main(__doc__, rows, draw, SIZE, "outlines of the experiment: t, x, z", height=4.5)
+    c.main(__doc__, rows, draw, SIZE, "the measured front: series, T, Z; or outlines: t, x, z", height=4.5)

@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""Compares runs of the collapsing column with the experiment: the front on the floor, the height of the column."""
+"""Compares runs of the collapsing column with the experiment: the front on the floor, the height of the column.
+
+--data FILE: the measured series, columns series, quantity, tscaled, value. The word of a series begins with n2_2 or n2_1, by
+the column's height over its width; the quantity is Z, the front over T, or H, the height over tau."""
 
 import pathlib
 import sys
@@ -35,6 +38,14 @@ def curves(run):
     return n2, t * np.sqrt(n2 * g / a), run.gauges["front"] / a, t * np.sqrt(g / a), run.gauges["column"] / height
 
 
+def measurements(n2, data):
+    """The measured front and height of the column: of the tables above, or those of `data`, in the order of their time."""
+    if not data:
+        return FRONT[n2], COLUMN[n2]
+    found = [data.of(("tscaled", "value"), series=f"n2_{n2}", quantity=quantity) for quantity in "ZH"]
+    return [rows[rows[:, 0].argsort()] for rows in found]
+
+
 def shift(t, front, measured):
     """The shift of the clock for which the front differs least, by the mean of its relative error; and that error."""
     shifts = np.linspace(-LARGEST_SHIFT, LARGEST_SHIFT, 101)
@@ -42,9 +53,9 @@ def shift(t, front, measured):
     return shifts[np.argmin(errors)], min(errors)
 
 
-def rows(run):
+def rows(run, data):
     n2, t, front, tau, height = curves(run)
-    measured, column = FRONT[n2], COLUMN[n2]
+    measured, column = measurements(n2, data)
     column = column[column[:, 0] <= tau[-1]]
     lag, error = shift(t, front, measured)
     plain = np.abs(np.interp(measured[:, 0], t, front) / measured[:, 1] - 1).mean()
@@ -64,17 +75,18 @@ def rows(run):
     ]
 
 
-def draw(runs, figure):
+def draw(runs, figure, data):
     fronts, columns = figure.subplots(1, 2)
     for run, colour in zip(runs, c.COLOURS):
         n2, t, front, tau, height = curves(run)
-        lag, _ = shift(t, front, FRONT[n2])
+        lag, _ = shift(t, front, measurements(n2, data)[0])
         name = f"height/width {n2}, {c.label(run, SIZE)}"
         fronts.plot(t + lag, front, color=colour, label=f"{name}, clock {lag:+.2f}")
         columns.plot(tau + lag / np.sqrt(n2), height, color=colour, label=name)
     for n2, mark in ((2, "ko"), (1, "k^")):
-        fronts.plot(*FRONT[n2].T, mark, ms=4, mfc="none", label=f"measured, height/width {n2}")
-        columns.plot(*COLUMN[n2].T, mark, ms=4, mfc="none")
+        front, column = measurements(n2, data)
+        fronts.plot(*front.T, mark, ms=4, mfc="none", label=f"measured, height/width {n2}")
+        columns.plot(*column.T, mark, ms=4, mfc="none")
     fronts.set(title="front / width a", xlabel="t sqrt(n² g/a)", xlim=(0, 3.6), ylim=(0.9, 5.2))
     columns.set(title="height of the column / first height", xlabel="t sqrt(g/a)", ylim=(0, 1.05))
     fronts.legend(fontsize=8)
@@ -85,4 +97,4 @@ def SIZE(run):
 
 
 if __name__ == "__main__":
-    c.main(__doc__, rows, draw, SIZE)
+    c.main(__doc__, rows, draw, SIZE, "the measured series: series, quantity, tscaled, value")

@@ -43,23 +43,34 @@ def by_period(run):
     return (t - start) % 1, eta
 
 
-def rows(run):
+def measurements(data):
+    """The measured level by the share of a period: of the table above, or that of `data` since its first bore."""
+    if not data:
+        return LEVEL
+    t, eta = data["t_over_T"], data["eta"]
+    k = np.flatnonzero((eta[:-1] <= 0.03) & (eta[1:] > 0.03))[0]
+    start = t[k] + (0.03 - eta[k]) / (eta[k + 1] - eta[k]) * (t[k + 1] - t[k])
+    return np.stack([(t - start) % 1, eta], 1)
+
+
+def rows(run, data):
     share, eta = by_period(run)
-    mine = np.array([eta[np.abs(share - s) < 0.02].mean() for s in LEVEL[:, 0]])
+    measured = measurements(data)
+    mine = np.array([eta[np.abs((share - s + 0.5) % 1 - 0.5) < 0.02].mean() for s in measured[:, 0]])
     shoulder = (share > 0.08) & (share < 0.16)
     return [
         c.row("crest [m], 95th percentile of its first tenth", np.percentile(eta[share < 0.1], 95), CRESTS, source=SOURCE),
         c.row("shoulder [m]", eta[shoulder].mean(), SHOULDER, source=SOURCE),
         c.row("trough [m]", np.percentile(eta, 2), TROUGH, source=SOURCE),
-        c.row("level, mean error over the crest", np.abs(mine - LEVEL[:, 1]).mean(), 0.0, scale=0.058, source=SOURCE),
+        c.row("level, mean error over the crest", np.abs(mine - measured[:, 1]).mean(), 0.0, scale=0.058, source=SOURCE),
     ]
 
 
-def draw(runs, figure):
+def draw(runs, figure, data):
     axes = figure.subplots()
     for run, colour in zip(runs, c.COLOURS):
         axes.plot(*by_period(run), ".", ms=2, color=colour, label=c.label(run, SIZE))
-    axes.plot(*LEVEL.T, "ko", ms=5, label="measured")
+    axes.plot(*measurements(data).T, "ko", ms=3 if data else 5, label="measured")
     axes.set(title="level over that at rest [m]", xlabel="t / T since the bore passes", xlim=(0, 1))
     axes.legend()
 
@@ -67,4 +78,4 @@ def draw(runs, figure):
 SIZE = ("h/dp", DEPTH)
 
 if __name__ == "__main__":
-    c.main(__doc__, rows, draw, SIZE)
+    c.main(__doc__, rows, draw, SIZE, "the measured level: t_over_T, eta")

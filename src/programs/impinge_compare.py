@@ -71,13 +71,25 @@ def print_table(heads, lines):
 
 
 class Series(dict):
-    """The columns of a CSV file by name, as arrays; lines that start with # are its comments. Gaps are NaN."""
+    """The columns of a CSV file by name, as arrays; lines that start with # are its comments. Gaps are NaN.
+
+    A column that begins with a word is one of words: it tells the series that a row is of.
+    """
 
     def __init__(self, path):
         lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
         head, *rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
-        columns = [[impinge.number(text) for text in column] for column in zip(*rows)]
-        super().__init__(zip(head, map(np.array, columns)))
+        super().__init__(zip(head, map(self.column, zip(*rows))))
+
+    @staticmethod
+    def column(texts):
+        numbers = np.array([impinge.number(text) for text in texts])
+        return np.array(texts) if texts[0].strip() and np.isnan(numbers[0]) and texts[0] != "nan" else numbers
+
+    def of(self, names, **words):
+        """The columns `names` of the rows whose columns of words begin with these, as an array of rows."""
+        use = np.logical_and.reduce([np.char.startswith(self[column], word) for column, word in words.items()])
+        return np.stack([self[name][use] for name in names], 1)
 
 
 def maxima(t, y, apart):
