@@ -49,6 +49,11 @@ table_of_runs() {
     run $level sway $n "particles.spacing=$(quotient 0.5 $n)" "time.dt=$(quotient 0.12 $n)"
   done
 
+  run coarse taylor-green 50
+  run fine taylor-green 100 particles.spacing=0.01 time.dt=2e-3
+  run fine taylor-green no-density-term-100 particles.spacing=0.01 time.dt=2e-3 pressure.density_rate=0 pressure.gamma=0 \
+    kernel.laplacian_radius=3.1
+
   for n in 20 40; do
     level=$([ $n = 20 ] && echo coarse || echo fine)
     run $level wave-maker piston-$n "particles.spacing=$(quotient 0.4 $n)" "time.dt=$(quotient 0.1 $n)"

@@ -142,7 +142,7 @@ void declare_method(Keys& keys, MethodSettings& s) {
            {.unit = "m/s",
             .range = positive,
             .fallback = "20 x the jet's speed after its fall to the plate, sqrt(2 |gravity| tank.fluid_height), "
-                        "periodic_box.shear_speed or that of the regions"});
+                        "that of the periodic box or that of the regions"});
 
   declare_damping(keys, s.damping);
 

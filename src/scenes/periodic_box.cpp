@@ -18,11 +18,14 @@ Scene<Dim> make_periodic_box(const MethodSettings& method, const PeriodicBoxSett
     lattice.extent[axis] = std::lround(box.size[axis] / lattice.spacing);
   }
   scene.next_id = lattice.count();
-  scene.fill = [=, speed = box.shear_speed, period = box.size[1]](int rank, int ranks, Particles<Dim>& particles) {
+  scene.fill = [=](int rank, int ranks, Particles<Dim>& particles) {
     for_share(lattice.count(), rank, ranks, [&](std::int64_t k) {
       const Vector<Dim> position = lattice.point(k);
+      const double x = 2.0 * std::numbers::pi * position[0] / box.size[0];
+      const double y = 2.0 * std::numbers::pi * position[1] / box.size[1];
       Vector<Dim> velocity;
-      velocity[0] = speed * std::sin(2.0 * std::numbers::pi * position[1] / period);
+      velocity[0] = (box.shear_speed - box.vortex_speed * std::cos(x)) * std::sin(y);
+      velocity[1] = box.vortex_speed * box.size[1] / box.size[0] * std::sin(x) * std::cos(y);
       particles.append({position, velocity, 0.0, 0.0, k, ParticleType::fluid});
     });
   };

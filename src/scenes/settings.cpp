@@ -177,6 +177,10 @@ void declare_scenes(Keys& keys, SceneSettings& s) {
     keys.add("periodic_box.shear_speed", s.periodic_box.shear_speed,
              "amplitude U of the initial velocity u_x = U sin(2 pi y / L_y)",
              {.unit = "m/s", .range = not_negative, .fixed = true});
+    keys.add("periodic_box.vortex_speed", s.periodic_box.vortex_speed,
+             "amplitude V of Taylor-Green vortices at the start, added to it: u_x = -V cos(2 pi x / L_x) sin(2 pi y / "
+             "L_y), u_y = V L_y / L_x sin(2 pi x / L_x) cos(2 pi y / L_y)",
+             {.unit = "m/s", .range = not_negative, .fixed = true});
   });
   keys.only_where(s.geometry, {SceneType::scene}, [&] {
     keys.add("domain.low", s.domain.low, "corner of the bounds with the smallest coordinates",
@@ -198,7 +202,9 @@ double reference_speed(const Keys& keys, const SceneSettings& s, const SceneInpu
     return std::hypot(s.jet.speed, std::sqrt(2.0 * gravity * s.jet.inlet_distance * s.jet.width));
   if (keys.usable(s.tank.fluid_height) && s.regions.empty()) return std::sqrt(2.0 * gravity * s.tank.fluid_height);
   if (s.geometry == SceneType::scene || !s.regions.empty()) return open_scene_speed(keys, s, in, gravity);
-  return keys.usable(s.periodic_box.shear_speed) ? s.periodic_box.shear_speed : 0.0;
+  const PeriodicBoxSettings& box = s.periodic_box;
+  if (!keys.usable(box.size, box.shear_speed, box.vortex_speed)) return 0.0;
+  return box.shear_speed + box.vortex_speed * std::max(1.0, box.size[1] / box.size[0]);
 }
 
 void derive_scene(const Keys& keys, SceneSettings& s, const SceneInputs& in) {

@@ -1,4 +1,4 @@
-// A shear wave in a periodic box decays as viscosity says.
+// Flows in a periodic box decay as viscosity says.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -47,6 +47,25 @@ TEST_P(ShearWave, DecaysAtTheAnalyticRate) {
   const double bound = config.fluid.corrected_viscosity ? 5e-3 : 0.03;
   EXPECT_NEAR(projection / amplitude, 1.0, bound);
   EXPECT_LT(deviation, bound * amplitude);
+}
+
+// E/E0 = exp(-16 pi^2 nu t / L^2). The square lattice buckles in the first fifth of the time: until then and behind.
+TEST(TaylorGreen, VorticesDecayAtTheExactRate) {
+  const Case config = shipped_case("taylor-green/taylor-green.toml");
+  auto simulation = make_simulation<2>(comm, config);
+  const double rate = 16.0 * std::pow(std::numbers::pi, 2) * config.fluid.viscosity;
+  const double at_start = simulation.report().kinetic_energy;
+  EXPECT_NEAR(at_start, 250.0, 1e-9);  // J/m: rho V^2 L^2 / 4
+  const auto energy_at = [&](double time) {
+    while (simulation.report().time < time - 1e-9) simulation.step(time);
+    return simulation.report().kinetic_energy / at_start;
+  };
+  const double early = energy_at(0.4), late = energy_at(1.0);
+  if (rank_of(comm) == 0)
+    fmt::print("  energy {:+.2f} % at 0.4 s, {:+.2f} % at 1 s\n", 100.0 * (early / std::exp(-0.4 * rate) - 1.0),
+               100.0 * (late / std::exp(-rate) - 1.0));
+  EXPECT_NEAR(early / std::exp(-0.4 * rate), 1.0, 0.03);           // measured: +2.1 %
+  EXPECT_NEAR(std::log(early / late) / (0.6 * rate), 1.0, 0.015);  // -0.7 to -0.9 %
 }
 
 }  // namespace

@@ -538,6 +538,8 @@ TEST(Case, DefaultsThatOverflowAreMistakes) {
             Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
   EXPECT_EQ(mistakes_in("periodic_box.shear_speed = 1e308", box_base),
             Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
+  EXPECT_EQ(mistakes_in("periodic_box.vortex_speed = 1e308", box_base),
+            Texts{"case.toml: time.max_speed = inf: such a default follows from the other keys; allowed: > 0 (m/s)"});
   EXPECT_EQ(parse("jet.speed = 1e308\ntime.max_speed = 1.5e308").time.max_speed, 1.5e308);
 }
 

@@ -228,6 +228,20 @@ TEST(PeriodicBox, IsFullOfFluidInAShearFlow) {
     EXPECT_EQ(box.velocity[i][1], 0.0);
   }
   EXPECT_EQ(fill<3>(box_case(3)).owned, 20 * 15 * 13);
+  // Vortices on top: free of divergence, the largest u_x is their speed.
+  const Case both = parse_case({{"box.toml", R"(geometry = "periodic_box"
+particles.spacing = 0.01
+time = {end = 1.0, dt = 1e-3}
+periodic_box = {size = [0.2, 0.1], shear_speed = 0.5, vortex_speed = 2.0}
+)"}});
+  EXPECT_DOUBLE_EQ(both.time.max_speed, 20.0 * 2.5);
+  const Particles<2> vortices = fill<2>(both);
+  for (std::size_t i = 0; i < vortices.position.size(); ++i) {
+    const double x = 10.0 * std::numbers::pi * vortices.position[i][0];
+    const double y = 20.0 * std::numbers::pi * vortices.position[i][1];
+    EXPECT_NEAR(vortices.velocity[i][0], (0.5 - 2.0 * std::cos(x)) * std::sin(y), 1e-13);
+    EXPECT_NEAR(vortices.velocity[i][1], 2.0 * 0.5 * std::sin(x) * std::cos(y), 1e-13);
+  }
   EXPECT_EQ(scene_of<3>(box_case(3)).periodic, (std::array{true, true, true}));
   EXPECT_EQ(scene_of<2>(tank_case(2)).periodic, (std::array{false, false}));
 }

@@ -34,8 +34,9 @@ struct TankSettings {
 };
 
 struct PeriodicBoxSettings {
-  Numbers size{};            ///< periods [m]
-  double shear_speed = 0.0;  ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
+  Numbers size{};             ///< periods [m]
+  double shear_speed = 0.0;   ///< amplitude of u_x = U sin(2 pi y / L_y) [m/s]
+  double vortex_speed = 0.0;  ///< largest u_x of Taylor-Green vortices [m/s]
 };
 
 struct DomainSettings {
@@ -71,7 +72,7 @@ struct SceneInputs {
 /// Declares the tables of the scenes. `geometry` must be declared before.
 void declare_scenes(Keys& keys, SceneSettings& settings);
 
-/// Speed of the jet, of a fall from the tank's fluid height, of the box' shear, or of the regions' fluid [m/s]; 0 if it
+/// Speed of the jet, of a fall from the tank's fluid height, of the box' flow, or of the regions' fluid [m/s]; 0 if it
 /// is unknown.
 double reference_speed(const Keys& keys, const SceneSettings& settings, const SceneInputs& inputs);
 
