@@ -24,7 +24,8 @@ UnitCosts unit_costs(const MethodSettings& settings) {
   // consistent scheme also surface marks, asymmetry, velocity, its gradient and its change, twice the crowding, and
   // four times the depth of the surface.
   double traffic = sizeof(typename Decomposition<Dim>::HaloRecord) + sizeof(PressureRole) + sizeof(double) + 2.0;
-  if (settings.fluid.viscosity > 0.0) traffic += sizeof(Vector<Dim>);
+  if (is_viscous(settings.fluid)) traffic += sizeof(Vector<Dim>);
+  if (settings.fluid.smagorinsky > 0.0) traffic += sizeof(double);
   if (settings.collision.distance > 0.0) traffic += 2.0 * sizeof(Vector<Dim>);
   if (settings.pressure.packing) traffic += 2.0 * sizeof(double);
   if (needs_asymmetry(settings)) traffic += sizeof(Vector<Dim>) + 1.0;

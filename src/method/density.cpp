@@ -44,7 +44,7 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
   const PressureSettings& pressure = settings.pressure;
   const bool corrects = pressure.corrected_divergence || pressure.corrected_gradient ||
                         needs_velocity_gradients(settings) ||
-                        (settings.fluid.viscosity > 0.0 && settings.fluid.corrected_viscosity);
+                        (is_viscous(settings.fluid) && settings.fluid.corrected_viscosity);
   const bool needs_all_asymmetries = needs_asymmetry(settings);
   number_density(near, particles.number_density);
   state.role.assign(static_cast<std::size_t>(state.walls.first_image()), PressureRole::absent);

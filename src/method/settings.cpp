@@ -47,6 +47,10 @@ void declare_method(Keys& keys, MethodSettings& s) {
   keys.add("fluid.corrected_viscosity", s.fluid.corrected_viscosity,
            "viscosity without a stress at the free surface and in a rotation; false: it acts as the Laplacian of the "
            "velocity, by the paper");
+  keys.add("fluid.smagorinsky", s.fluid.smagorinsky,
+           "C_s of Smagorinsky's viscosity of eddies smaller than a spacing, nu_t = (C_s dp)^2 sqrt(2 D:D), D the rate "
+           "of strain; 0: none; usual: 0.1 to 0.2; needs fluid.corrected_viscosity",
+           {.unit = "dp", .range = from_to(0, 0.5)});
   keys.add("fluid.gravity", s.fluid.gravity, "gravity; the last component is the vertical one", {.unit = "m/s^2"});
   keys.add("fluid.central_force", s.fluid.central_force, "B of a force per mass -B^2 (r - fluid.force_center)",
            {.unit = "1/s", .range = not_negative});
@@ -172,6 +176,9 @@ void check_method(Keys& keys, const MethodSettings& s) {
     if (keys.usable(before.time, here.time) && here.time <= before.time)
       keys.mistake(here.time, fmt::format("the times do not rise; allowed: > {} (s)", number_text(before.time)));
   }
+  if (keys.usable(s.fluid.smagorinsky, s.fluid.corrected_viscosity) && s.fluid.smagorinsky > 0.0 &&
+      !s.fluid.corrected_viscosity)
+    keys.mistake(s.fluid.smagorinsky, "needs fluid.corrected_viscosity = true; allowed: 0 (dp)");
   const FreeSurfaceSettings& surface = s.free_surface;
   if (keys.usable(surface.surface_density, surface.interior_density) &&
       surface.surface_density > surface.interior_density) {

@@ -271,6 +271,10 @@ TEST(Case, FindsMistakesInTheSchemesKeys) {
             Texts{"case.toml:1: shifting.least_distance = 1.1: out of range; allowed: [0, 1] (dp)"});
   EXPECT_EQ(mistakes_in("collision.distance = 1.1"),
             Texts{"case.toml:1: collision.distance = 1.1: out of range; allowed: [0, 1] (dp)"});
+  EXPECT_EQ(mistakes_in("fluid.smagorinsky = 0.6"),
+            Texts{"case.toml:1: fluid.smagorinsky = 0.6: out of range; allowed: [0, 0.5] (dp)"});
+  EXPECT_EQ(mistakes_in("fluid.smagorinsky = 0.1\nfluid.corrected_viscosity = false"),
+            Texts{"case.toml:1: fluid.smagorinsky = 0.1: needs fluid.corrected_viscosity = true; allowed: 0 (dp)"});
   for (const std::string key :
        {"fluid.corrected_viscosity", "pressure.packing", "pressure.corrected_divergence", "pressure.corrected_gradient",
         "free_surface.zero_outside", "shifting.correct_velocity", "time.mean_velocity"})

@@ -6,6 +6,7 @@
 
 #include "cloud_with_pairs.hpp"
 #include "dimensions.hpp"
+#include "impinge/method/viscosity.hpp"
 
 namespace impinge {
 namespace {
@@ -398,6 +399,19 @@ TYPED_TEST(Operators, ViscousSumsAreOverThePairs) {
   EXPECT_DOUBLE_EQ(sums.offsets[0], 0.5 * 0.6);
   EXPECT_DOUBLE_EQ(sums.offsets[1], 0.5 * 0.8 - 0.25 * 2.0);
   EXPECT_DOUBLE_EQ(sums.spread, 0.5 * 1.0 + 0.25 * 4.0);
+}
+
+TYPED_TEST(Operators, EddyViscosityIsThatOfTheRateOfStrain) {
+  constexpr int Dim = TypeParam::value;
+  Matrix<Dim> shear, spin, stretch;
+  shear.row[0][1] = 3.0;
+  spin.row[0][1] = -2.0;
+  spin.row[1][0] = 2.0;
+  stretch.row[0][0] = 1.0;
+  stretch.row[1][1] = -1.0;
+  EXPECT_DOUBLE_EQ(eddy_viscosity(shear, 0.5), 0.25 * 3.0);
+  EXPECT_EQ(eddy_viscosity(spin, 0.5), 0.0);
+  EXPECT_DOUBLE_EQ(eddy_viscosity(stretch, 0.5), 0.25 * 2.0);
 }
 
 TYPED_TEST(Operators, AParticleThatLeavesAWallLeavesItsImageBehind) {

@@ -28,11 +28,15 @@ struct FluidSettings {
   double density = 1000.0;               ///< [kg/m^3]
   double viscosity = 0.0;                ///< kinematic [m^2/s]
   bool corrected_viscosity = true;       ///< (11a) instead of (11)
+  double smagorinsky = 0.0;              ///< C_s of the eddies' viscosity (11b) [dp]; 0: none
   Numbers gravity{};                     ///< [m/s^2]
   std::vector<GravityEntry> gravity_at;  ///< instead of gravity: linear in time between the entries
   double central_force = 0.0;            ///< B of the force per mass -B^2 (r - center) [1/s]
   Numbers force_center{};                ///< its centre [m]
 };
+
+/// True where viscosity, of the fluid or of its eddies, acts.
+inline bool is_viscous(const FluidSettings& fluid) { return fluid.viscosity > 0.0 || fluid.smagorinsky > 0.0; }
 
 struct ParticleSettings {
   double spacing = 0.0;  ///< dp [m]
