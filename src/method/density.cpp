@@ -69,9 +69,14 @@ void measure_density(const MethodSettings& settings, const LatticeSums& lattice,
     if (type == ParticleType::wall) state.asymmetry[self] = {};  // the free surface is the fluid's
   }
   if (limits.zero_outside) leave_out_lone(n0, state);
-  state.decomposition.halo().refresh(state.role, particles.owned);
-  if (corrects || needs_all_asymmetries || pressure.packing) state.refresh(particles.free_surface);
-  if (needs_all_asymmetries) state.refresh_directions(state.asymmetry);
+  const Halo& halo = state.decomposition.halo();
+  if (!needs_all_asymmetries) {
+    halo.refresh_together(particles.owned, state.role, particles.free_surface);
+  } else {
+    halo.refresh_together(particles.owned, state.role, particles.free_surface, state.asymmetry);
+    state.walls.copy_directions(state.asymmetry);
+  }
+  state.walls.copy(particles.free_surface);
 }
 
 template void measure_density(const MethodSettings&, const LatticeSums&, State<2>&);

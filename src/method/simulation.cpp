@@ -282,10 +282,13 @@ void Simulation<Dim>::pass_boundaries() {
   const BoundaryFlow flow =
       pass_open_boundaries<Dim>(scene_.inlets, scene_.outlets, scene_.next_id, particles,
                                 [&](const Vector<Dim>& position) { return state_.decomposition.owns(position); });
-  report_.in += sum_over_ranks(comm_, flow.entered);
-  report_.out += sum_over_ranks(comm_, flow.left);
+  std::vector<std::int64_t> counts = flow.left_by;
+  counts.insert(counts.end(), {flow.entered, flow.left});
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, comm_);
+  report_.out += counts.back();
+  report_.in += counts[counts.size() - 2];
   for (std::size_t k = 0; k < scene_.outlets.size(); ++k)
-    if (scene_.outlets[k].region) scene_.outlets[k].out += sum_over_ranks(comm_, flow.left_by[k]);
+    if (scene_.outlets[k].region) scene_.outlets[k].out += counts[k];
 }
 
 // Before particles are told to stay on their side.

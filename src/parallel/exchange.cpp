@@ -1,58 +1,81 @@
 #include "impinge/parallel/exchange.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace impinge {
+namespace {
 
-Exchange::Exchange(MPI_Comm comm, std::span<const std::pair<int, int>> runs) {
-  // Tell every destination where in this rank's send buffer its run begins and how long it is.
+constexpr int tag = 1;
+
+}  // namespace
+
+Exchange::Exchange(MPI_Comm comm, std::span<const std::pair<int, int>> runs) : comm_(comm) {
+  const int self = rank_of(comm);
   std::vector<PetscMPIInt> destinations;
-  std::vector<int> places;
+  std::vector<int> counts;
   for (const auto& [rank, count] : runs) {
-    destinations.push_back(rank);
-    places.insert(places.end(), {n_send_, count});
+    const Run run{rank, n_send_, count};
     n_send_ += count;
+    if (rank == self) {
+      own_send_ = own_receive_ = run;
+    } else if (count > 0) {
+      sends_.push_back(run);
+      destinations.push_back(rank);
+      counts.push_back(count);
+    }
   }
   PetscMPIInt n_sources = 0;
   PetscMPIInt* sources = nullptr;
-  int* source_places = nullptr;
-  petsc_check(PetscCommBuildTwoSided(comm, 2, MPI_INT, static_cast<PetscMPIInt>(destinations.size()),
-                                     destinations.data(), places.data(), &n_sources, &sources, &source_places));
-  std::vector<int> order(static_cast<std::size_t>(n_sources));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return sources[a] < sources[b]; });
-
-  std::vector<PetscSFNode> remote;
-  for (const int k : order)
-    for (int item = 0; item < source_places[2 * k + 1]; ++item)
-      remote.push_back({sources[k], source_places[2 * k] + item});
+  int* source_counts = nullptr;
+  petsc_check(PetscCommBuildTwoSided(comm, 1, MPI_INT, static_cast<PetscMPIInt>(destinations.size()),
+                                     destinations.data(), counts.data(), &n_sources, &sources, &source_counts));
+  for (int k = 0; k < n_sources; ++k) receives_.push_back({sources[k], 0, source_counts[k]});
   petsc_check(PetscFree(sources));
-  petsc_check(PetscFree(source_places));
-  n_receive_ = static_cast<int>(remote.size());
-
-  petsc_check(PetscSFCreate(comm, forest_.address()));
-  petsc_check(
-      PetscSFSetGraph(forest_, n_send_, n_receive_, nullptr, PETSC_COPY_VALUES, remote.data(), PETSC_COPY_VALUES));
-  petsc_check(PetscSFSetUp(forest_));
+  petsc_check(PetscFree(source_counts));
+  std::ranges::sort(receives_, {}, &Run::rank);
+  bool is_after_own = false;
+  for (Run& run : receives_) {
+    if (!is_after_own && run.rank > self) {
+      is_after_own = true;
+      own_receive_.first = n_receive_;
+      n_receive_ += own_receive_.count;
+    }
+    run.first = n_receive_;
+    n_receive_ += run.count;
+  }
+  if (is_after_own) return;
+  own_receive_.first = n_receive_;
+  n_receive_ += own_receive_.count;
 }
 
+void Exchange::begin(const void* send, void* receive, MPI_Datatype item, std::size_t item_bytes) const {
+  const auto* from = static_cast<const std::byte*>(send);
+  auto* to = static_cast<std::byte*>(receive);
+  const auto place = [&](const Run& run) { return static_cast<std::size_t>(run.first) * item_bytes; };
+  requests_.resize(receives_.size() + sends_.size());
+  MPI_Request* request = requests_.data();
+  for (const Run& run : receives_) MPI_Irecv(to + place(run), run.count, item, run.rank, tag, comm_, request++);
+  for (const Run& run : sends_) MPI_Isend(from + place(run), run.count, item, run.rank, tag, comm_, request++);
+  if (own_send_.count > 0)
+    std::memcpy(to + place(own_receive_), from + place(own_send_),
+                static_cast<std::size_t>(own_send_.count) * item_bytes);
+}
+
+void Exchange::end() const { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
+
 void Exchange::forward_bytes(const void* send, void* receive, int item_bytes) const {
-  if (forest_ == nullptr) return;
   MPI_Datatype item;
   MPI_Type_contiguous(item_bytes, MPI_BYTE, &item);
   MPI_Type_commit(&item);
-  petsc_check(PetscSFBcastBegin(forest_, item, send, receive, MPI_REPLACE));
-  petsc_check(PetscSFBcastEnd(forest_, item, send, receive, MPI_REPLACE));
+  begin(send, receive, item, static_cast<std::size_t>(item_bytes));
+  end();
   MPI_Type_free(&item);
 }
 
 void Exchange::begin_forward(const double* send, double* receive) const {
-  if (forest_ != nullptr) petsc_check(PetscSFBcastBegin(forest_, MPI_DOUBLE, send, receive, MPI_REPLACE));
+  begin(send, receive, MPI_DOUBLE, sizeof(double));
 }
 
-void Exchange::end_forward(const double* send, double* receive) const {
-  if (forest_ != nullptr) petsc_check(PetscSFBcastEnd(forest_, MPI_DOUBLE, send, receive, MPI_REPLACE));
-}
+void Exchange::end_forward() const { end(); }
 
 }  // namespace impinge

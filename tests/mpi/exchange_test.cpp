@@ -54,6 +54,30 @@ TEST(Exchange, NeedsNoRuns) {
   expect_delivery([](int, int to) { return to == 0 ? -1 : 2; });      // rank 0 receives nothing
 }
 
+TEST(Halo, RefreshesFieldsTogetherAsOneByOne) {
+  const int self = rank_of(comm), ranks = ranks_of(comm), next = (self + 1) % ranks;
+  const std::vector<int> index{2, 0};
+  const Halo halo(Exchange(comm, std::vector<std::pair<int, int>>{{next, 2}}), index);
+  const int before = (self + ranks - 1) % ranks;
+  std::vector<std::uint8_t> mark{1, 0, static_cast<std::uint8_t>(2 + self), 9, 9};
+  std::vector<double> number{0.5 + self, 1.5, 2.5, 0.0, 0.0};
+  std::vector<Vector<3>> place(5);
+  place[2] = {1.0, 2.0, 3.0 + self};
+  auto mark_alone = mark;
+  auto number_alone = number;
+  auto place_alone = place;
+  halo.refresh(mark_alone, 3);
+  halo.refresh(number_alone, 3);
+  halo.refresh(place_alone, 3);
+  halo.refresh_together(3, mark, number, place);
+  EXPECT_EQ(mark, mark_alone);
+  EXPECT_EQ(number, number_alone);
+  EXPECT_EQ(place, place_alone);
+  EXPECT_EQ(mark[3], 2 + before);
+  EXPECT_EQ(number[4], 0.5 + before);
+  EXPECT_EQ(place[3][2], 3.0 + before);
+}
+
 TEST(Exchange, DeliversToTheSenderItself) {
   expect_delivery([](int from, int to) { return from == to ? 4 : -1; });
 }

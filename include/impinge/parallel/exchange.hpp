@@ -2,6 +2,8 @@
 // Communication patterns. An Exchange moves packed items between ranks; a Halo refreshes copies with it.
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -33,14 +35,27 @@ class Exchange {
     forward_bytes(send, receive, static_cast<int>(sizeof(T)));
   }
 
-  /// The two halves of forward, for work in between that touches neither array. Collective.
-  void begin_forward(const double* send, double* receive) const;
-  void end_forward(const double* send, double* receive) const;
-
- private:
+  /// Likewise of items of so many bytes. Collective.
   void forward_bytes(const void* send, void* receive, int item_bytes) const;
 
-  PetscForest forest_;
+  /// The two halves of forward, for work in between that touches neither array. Collective.
+  void begin_forward(const double* send, double* receive) const;
+  void end_forward() const;
+
+ private:
+  struct Run {
+    int rank, first, count;
+  };
+
+  void begin(const void* send, void* receive, MPI_Datatype item, std::size_t item_bytes) const;
+  void end() const;
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  std::vector<Run> sends_;     // to other ranks
+  std::vector<Run> receives_;  // from other ranks
+  Run own_send_{};             // to this rank
+  Run own_receive_{};
+  mutable std::vector<MPI_Request> requests_;
   int n_send_ = 0;
   int n_receive_ = 0;
 };
@@ -89,6 +104,29 @@ class Halo {
     std::vector<T> packed(index_.size());
     pack(field.data(), packed);
     exchange_.forward(packed.data(), field.data() + owned);
+  }
+
+  /// refresh of several fields in one message to each rank. Collective.
+  template <class... T>
+  void refresh_together(int owned, std::vector<T>&... fields) const {
+    static_assert((std::is_trivially_copyable_v<T> && ...));
+    constexpr std::size_t item = (sizeof(T) + ...);
+    std::vector<std::byte> packed(index_.size() * item);
+    std::vector<std::byte> received(static_cast<std::size_t>(exchange_.n_receive()) * item);
+    std::byte* to = packed.data();
+    const auto pack_one = [&]<class U>(const U& value) {
+      std::memcpy(to, &value, sizeof value);
+      to += sizeof value;
+    };
+    for (const int i : index_) (pack_one(fields[static_cast<std::size_t>(i)]), ...);
+    exchange_.forward_bytes(packed.data(), received.data(), static_cast<int>(item));
+    const std::byte* from = received.data();
+    const auto unpack_one = [&]<class U>(U& value) {
+      std::memcpy(&value, from, sizeof value);
+      from += sizeof value;
+    };
+    for (std::size_t k = 0; k < static_cast<std::size_t>(exchange_.n_receive()); ++k)
+      (unpack_one(fields[static_cast<std::size_t>(owned) + k]), ...);
   }
 
  private:

@@ -26,7 +26,7 @@ std::size_t MatrixRows::Block::bytes() const {
          static_cast<std::size_t>(start.back()) * (sizeof(PetscInt) + sizeof(double));
 }
 
-void PressureMatrix::build(MPI_Comm comm, MatrixRows& rows, const Halo& halo) {
+void PressureMatrix::build(MPI_Comm comm, MatrixRows& rows, const Halo& halo, PetscInt all_rows) {
   comm_ = comm;
   rows_ = &rows;
   halo_ = &halo;
@@ -44,7 +44,7 @@ void PressureMatrix::build(MPI_Comm comm, MatrixRows& rows, const Halo& halo) {
   petsc_check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, own_x_.address()));
   petsc_check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, own_y_.address()));
   petsc_check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n_halo, halo_x_.data(), halo_x_view_.address()));
-  petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, this, shell_.address()));
+  petsc_check(MatCreateShell(comm, n, n, all_rows, all_rows, this, shell_.address()));
   using Product = PetscErrorCode (*)(Mat, ::Vec, ::Vec);
   const Product product = [](Mat shell, ::Vec x, ::Vec y) -> PetscErrorCode {
     void* self = nullptr;
@@ -65,7 +65,7 @@ void PressureMatrix::multiply(::Vec x, ::Vec y) {
   petsc_check(VecPlaceArray(own_x_, from));
   petsc_check(VecPlaceArray(own_y_, to));
   petsc_check(MatMult(own_, own_x_, own_y_));
-  halo_->exchange().end_forward(sent_.data(), halo_x_.data());
+  halo_->exchange().end_forward();
   petsc_check(MatMultAdd(others_, halo_x_view_, own_y_, own_y_));
   petsc_check(VecResetArray(own_x_));
   petsc_check(VecResetArray(own_y_));

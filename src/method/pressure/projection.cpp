@@ -254,15 +254,15 @@ PressureReport Projection<Dim>::try_solve(std::span<const double> source, State<
 template <int Dim>
 void Projection<Dim>::share_pressure(State<Dim>& state) const {
   std::vector<double>& pressure = state.particles.pressure;
-  state.refresh(pressure);
-  if (settings_.walls.model != WallModel::mirror || state.walls.empty()) return;
+  if (settings_.walls.model != WallModel::mirror || state.walls.empty()) return state.refresh(pressure);
   std::vector<std::uint8_t> lets_go(pressure.size(), settings_.pressure.clamp_negative ? 1 : 0);
   if (!settings_.pressure.clamp_negative) {
     for (std::size_t i = 0; i < state.owned(); ++i)
       lets_go[i] =
           !state.walls.faces().around(state.particles.position[i]).empty() && meets_air(state, static_cast<int>(i));
-    state.decomposition.halo().refresh(lets_go, state.particles.owned);
   }
+  state.decomposition.halo().refresh_together(state.particles.owned, pressure, lets_go);
+  state.walls.copy(pressure);
   state.walls.for_images([&](std::size_t image, std::size_t at, std::size_t from) {
     if (!image_offset_.empty()) pressure[at] += image_offset_[image];
     if (lets_go[from]) pressure[at] = std::max(pressure[at], 0.0);

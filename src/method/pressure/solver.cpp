@@ -33,14 +33,16 @@ std::size_t place_of(const std::vector<PetscInt>& labels, PetscInt label) {
   return static_cast<std::size_t>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
 }
 
-// Spreads a mark from particle to particle until nothing changes on any rank. sweep() updates the marks of owned
-// particles as far as it gets on its own, and says whether it changed any.
+// Spreads a mark from particle to particle until nothing changes on any rank or nothing is left to mark. sweep()
+// updates the marks of owned particles as far as it gets on its own. True if something is left on any rank.
 template <class T, class Sweep>
-void spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Sweep&& sweep) {
-  bool changed_anywhere = true;
-  while (changed_anywhere) {
+bool spread(MPI_Comm comm, const Halo& halo, std::vector<T>& mark, int owned, Sweep&& sweep) {
+  while (true) {
     halo.refresh(mark, owned);
-    changed_anywhere = any_rank(comm, sweep());
+    const auto [changed, is_left] = sweep();
+    std::array<int, 2> anywhere{changed, is_left};
+    MPI_Allreduce(MPI_IN_PLACE, anywhere.data(), 2, MPI_INT, MPI_MAX, comm);
+    if (!anywhere[0] || !anywhere[1]) return anywhere[1] != 0;
   }
 }
 
@@ -71,6 +73,7 @@ void PressureSolver::create_solver() {
   petsc_check(KSPCreate(comm_, solver_.address()));
   petsc_check(KSPSetOptionsPrefix(solver_, prefix));
   petsc_check(KSPSetType(solver_, KSPCG));
+  petsc_check(KSPCGUseSingleReduction(solver_, PETSC_TRUE));
   petsc_check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
   petsc_check(KSPSetTolerances(solver_, tolerance_, PETSC_DEFAULT, 1e20, 10000));
   petsc_check(PCSetType(preconditioner(), two_level));
@@ -90,9 +93,7 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   create_solver();  // KSPReset would leave a multigrid's levels with the sizes of the last step
   whole_matrix_.reset();
   const std::size_t owned = equation.source.size();
-  const auto own_rows = static_cast<PetscInt>(owned);
-  first_row_ = 0;
-  MPI_Exscan(&own_rows, &first_row_, 1, MPIU_INT, MPI_SUM, comm_);
+  first_row_ = owned > 0 ? equation.row[0] : 0;
   const double usual_entries = reserve * static_cast<double>(owned) * (0.5 * equation.usual_pairs + 1.0);
   rows_.own.clear(owned, static_cast<std::size_t>(usual_entries));
   rows_.others.clear(owned, 0);
@@ -104,7 +105,9 @@ void PressureSolver::assemble(const PressureEquation& equation, const Halo& halo
   find_pockets(equation, halo);
   close_pockets(equation);
 
-  matrix_.build(comm_, rows_, halo);
+  auto all_rows = static_cast<PetscInt>(owned);
+  MPI_Allreduce(MPI_IN_PLACE, &all_rows, 1, MPIU_INT, MPI_SUM, comm_);
+  matrix_.build(comm_, rows_, halo, all_rows);
   if (!is_two_level_) whole_matrix_ = matrix_.whole_matrix(equation.row);
 }
 
@@ -238,7 +241,7 @@ void PressureSolver::close_pockets(const PressureEquation& equation) {
 
 // Most hear of p = 0 from a later particle, all but a few of the rest from no one: only if some are left over do those
 // that know tell the later ones.
-bool PressureSolver::spread_anchors(std::span<const PressureRole> role) {
+PressureSolver::Sweep PressureSolver::spread_anchors(std::span<const PressureRole> role) {
   const std::size_t owned = rows_.diagonal.size();
   bool changed = false;
   while (true) {
@@ -248,7 +251,7 @@ bool PressureSolver::spread_anchors(std::span<const PressureRole> role) {
       anchored_[i] = any_later(i, [&](std::size_t j) { return anchored_[j] != 0; });
       (anchored_[i] ? changed : left_over) = true;
     }
-    if (!left_over) return changed;
+    if (!left_over) return {changed, false};
     bool told = false;
     for (std::size_t i = 0; i < owned; ++i) {
       if (anchored_[i] != 1 || role[i] != PressureRole::unknown) continue;
@@ -258,7 +261,7 @@ bool PressureSolver::spread_anchors(std::span<const PressureRole> role) {
         return false;
       });
     }
-    if (!told) return changed;
+    if (!told) return {changed, true};
     changed = true;
   }
 }
@@ -268,11 +271,8 @@ void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& 
   pockets_.clear();
   pocket_.assign(static_cast<std::size_t>(owned), -1);
 
-  spread(comm_, halo, anchored_, owned, [&] { return spread_anchors(equation.role); });
+  if (!spread(comm_, halo, anchored_, owned, [&] { return spread_anchors(equation.role); })) return;
   const auto in_pocket = [&](std::size_t i) { return equation.role[i] == PressureRole::unknown && !anchored_[i]; };
-  bool found = false;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) found |= in_pocket(i);
-  if (!any_rank(comm_, found)) return;
 
   // A pocket's label is its smallest row. Sweeps go forth and back along the sorted particles, so few are needed.
   std::vector<PetscInt> label(equation.row.begin(), equation.row.end());
@@ -293,7 +293,7 @@ void PressureSolver::find_pockets(const PressureEquation& equation, const Halo& 
       for (std::size_t i = static_cast<std::size_t>(owned); i-- > 0;) level(i);
       changed |= again;
     }
-    return changed;
+    return Sweep{changed, true};
   });
   std::vector<PetscInt> own_labels;
   for (std::size_t i = 0; i < static_cast<std::size_t>(owned); ++i) {
@@ -309,12 +309,22 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
   report.pockets = static_cast<int>(pockets_.size());
   const auto n = static_cast<PetscInt>(right_hand_side_.size());
   PetscVector b, x, residual, change;
-  petsc_check(VecCreateMPIWithArray(comm_, 1, n, PETSC_DETERMINE, right_hand_side_.data(), b.address()));
-  petsc_check(VecCreateMPIWithArray(comm_, 1, n, PETSC_DETERMINE, pressure.data(), x.address()));
+  PetscInt all = 0;
+  petsc_check(MatGetSize(matrix(), &all, nullptr));
+  petsc_check(VecCreateMPIWithArray(comm_, 1, n, all, right_hand_side_.data(), b.address()));
+  petsc_check(VecCreateMPIWithArray(comm_, 1, n, all, pressure.data(), x.address()));
   petsc_check(VecDuplicate(b, residual.address()));
   petsc_check(VecDuplicate(b, change.address()));
-  double b_norm = 0.0;
-  petsc_check(VecNorm(b, NORM_2, &b_norm));
+  for (std::size_t i = 0; i < right_hand_side_.size(); ++i)
+    if (rows_.coupling[i] == 0.0) pressure[i] = right_hand_side_[i] / rows_.diagonal[i];
+  petsc_check(MatMult(matrix(), x, residual));
+  double b_norm = 0.0, x_a_x = 0.0, x_b = 0.0;  // one reduction
+  petsc_check(VecNormBegin(b, NORM_2, &b_norm));
+  petsc_check(VecDotBegin(x, residual, &x_a_x));
+  petsc_check(VecDotBegin(x, b, &x_b));
+  petsc_check(VecNormEnd(b, NORM_2, &b_norm));
+  petsc_check(VecDotEnd(x, residual, &x_a_x));
+  petsc_check(VecDotEnd(x, b, &x_b));
   if (!std::isfinite(b_norm)) {
     report.failure = "the source is not a number";
     return report;
@@ -323,14 +333,8 @@ PressureReport PressureSolver::solve(std::vector<double>& pressure) {
     petsc_check(VecZeroEntries(x));
     return report;
   }
-  for (std::size_t i = 0; i < right_hand_side_.size(); ++i)
-    if (rows_.coupling[i] == 0.0) pressure[i] = right_hand_side_[i] / rows_.diagonal[i];
   // The multiple of the guess that is nearest to the solution in the norm of the matrix; the solver finds the rest.
-  const std::array<::Vec, 2> others{residual, b};
-  std::array<double, 2> products{};  // x.Ax, x.b
-  petsc_check(MatMult(matrix(), x, residual));
-  petsc_check(VecMDot(x, 2, others.data(), products.data()));
-  const double scale = products[0] > 0.0 ? products[1] / products[0] : 0.0;
+  const double scale = x_a_x > 0.0 ? x_b / x_a_x : 0.0;
   petsc_check(VecScale(x, scale));
   petsc_check(VecAYPX(residual, -scale, b));
   // The residual counts against all of b.

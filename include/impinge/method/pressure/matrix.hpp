@@ -39,8 +39,8 @@ class PressureMatrix {
   PressureMatrix(const PressureMatrix&) = delete;
   PressureMatrix& operator=(const PressureMatrix&) = delete;
 
-  /// Collective.
-  void build(MPI_Comm comm, MatrixRows& rows, const Halo& halo);
+  /// `all_rows`: of all ranks. Collective.
+  void build(MPI_Comm comm, MatrixRows& rows, const Halo& halo, PetscInt all_rows);
 
   /// The matrix of the last build: symmetric, for products.
   Mat product_matrix() const { return ranks_of(comm_) == 1 ? Mat(own_) : Mat(shell_); }

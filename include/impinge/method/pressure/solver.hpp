@@ -97,7 +97,10 @@ class PressureSolver {
   void append_row(const PressureEquation& equation, int i, const PressureEquation::Row& row);
   template <class Test>
   bool any_later(std::size_t i, Test&& test) const;
-  bool spread_anchors(std::span<const PressureRole> role);
+  struct Sweep {
+    bool changed, is_left;
+  };
+  Sweep spread_anchors(std::span<const PressureRole> role);
   void find_pockets(const PressureEquation& equation, const Halo& halo);
   void close_pockets(const PressureEquation& equation);
 
