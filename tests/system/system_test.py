@@ -692,7 +692,7 @@ class Run(System):
             self.assertEqual("KSP Residual norm" in done.stdout, "-ppe_ksp_monitor" in words)
 
     def test_a_petsc_option_may_concern_some_ranks_only(self):
-        self.run_case("--set", "time.end=0.004", "-ppe_coarse_pc_type", "telescope",
+        self.run_case("--set", "time.end=0.004", "-ppe_coarse_rows_per_rank", "1", "-ppe_coarse_pc_type", "telescope",
                       "-ppe_coarse_pc_telescope_reduction_factor", "2", "-ppe_coarse_telescope_pc_type", "hypre")
 
     def test_partitioner_and_log_stages(self):
