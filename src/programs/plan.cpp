@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 #include "impinge/method/costs.hpp"
+#include "impinge/method/pressure/coarse_solver.hpp"
 #include "impinge/method/pressure/two_level.hpp"
 #include "impinge/parallel/decomposition.hpp"
 #include "impinge/scenes/scenes.hpp"
@@ -61,8 +64,7 @@ std::vector<CellCount> count_particles(MPI_Comm comm, const CellGrid<Dim>& cells
   return counts;
 }
 
-// Particles that each rank receives, and the coarse values that it has of others' cells, as if each cell with particles
-// had one.
+// Particles and coarse values that each rank receives, as if each cell with particles had a coarse row.
 template <int Dim>
 void count_copies(const CellGrid<Dim>& cells, const CellOwners<Dim>& owner, std::span<const CellCount> counts,
                   Plan& plan) {
@@ -72,6 +74,11 @@ void count_copies(const CellGrid<Dim>& cells, const CellOwners<Dim>& owner, std:
     exchanges.erase(std::unique(exchanges.begin(), exchanges.end()), exchanges.end());
   };
   constexpr int reach = TwoLevelPreconditioner<Dim>::node_reach;
+  const CoarseBlocks blocks =
+      CoarseBlocks::of(plan.occupied, static_cast<int>(plan.ranks.size()), CoarseSolver::default_rows_per_rank(Dim));
+  std::vector<std::int64_t> next_row(plan.ranks.size());  // by rank, and on a rank by key
+  std::transform_exclusive_scan(plan.ranks.begin(), plan.ranks.end(), next_row.begin(), std::int64_t{0}, std::plus{},
+                                [](const RankPlan& rank) { return rank.nodes; });
   std::vector<HaloTarget<Dim>> targets;
   std::vector<int> users;
   std::size_t distinct = 0;
@@ -95,10 +102,14 @@ void count_copies(const CellGrid<Dim>& cells, const CellOwners<Dim>& owner, std:
     users.assign(1, self);
     for_cells_around(cells, cell, reach, [&](std::int64_t near, const Vector<Dim>&) {
       const int user = owner(near);
-      if (std::ranges::find(users, user) != users.end()) return;
-      users.push_back(user);
-      ++plan.ranks[static_cast<std::size_t>(user)].node_copies;
+      if (std::ranges::find(users, user) == users.end()) users.push_back(user);
     });
+    const int solver = blocks.rank_of_row(next_row[static_cast<std::size_t>(self)]++);
+    for (const int user : users) {
+      if (user == solver) continue;
+      ++plan.ranks[static_cast<std::size_t>(user)].coarse_values;
+      ++plan.ranks[static_cast<std::size_t>(solver)].coarse_values;
+    }
   }
   make_distinct();
   for (const auto& [receiver, sender] : exchanges) ++plan.ranks[static_cast<std::size_t>(receiver)].neighbours;
@@ -162,7 +173,7 @@ Plan plan_run(MPI_Comm comm, const Case& config, int ranks) {
   for (RankPlan& rank : plan.ranks) {
     rank.field_bytes = static_cast<double>(rank.received) * sizeof(double);
     rank.step_bytes = static_cast<double>(rank.received) * costs.halo_traffic;
-    rank.iteration_bytes = static_cast<double>(rank.received + 2 * rank.node_copies) * sizeof(double);
+    rank.iteration_bytes = static_cast<double>(rank.received + rank.coarse_values) * sizeof(double);
     rank.memory = static_cast<double>(rank.owned + rank.halo) * costs.particle_memory +
                   static_cast<double>(rank.rows) * costs.row_memory + static_cast<double>(plan.table_bytes());
   }

@@ -20,11 +20,11 @@ struct RankPlan {
   std::int64_t received = 0;     ///< those of them that come from other ranks, not images of its own particles
   std::int64_t neighbours = 0;   ///< other ranks that it receives copies from
   std::int64_t nodes = 0;        ///< owned cells with particles, each a node of the two-level preconditioner's grid
-  std::int64_t node_copies = 0;  ///< cells of other ranks whose coarse values it exchanges
+  std::int64_t coarse_values = 0;  ///< received per solver iteration: residuals where it solves, corrections at its nodes
 
   double field_bytes = 0.0;      ///< received when one double per halo particle is refreshed
   double step_bytes = 0.0;       ///< received per step in refreshes of the halo, but for the iterations of the solver
-  double iteration_bytes = 0.0;  ///< received per solver iteration, the coarse solver's own traffic excepted; at most
+  double iteration_bytes = 0.0;  ///< received per solver iteration, the coarse solver's cycle excepted; at most
   double memory = 0.0;           ///< of particles, pair lists, matrix, interpolation and segments [bytes]
 };
 

@@ -49,35 +49,22 @@ void CoarseSolver::create_solver(MPI_Comm comm) {
   for (const std::string& option : preferred) petsc_check(PetscOptionsClearValue(nullptr, option.c_str()));
 }
 
-// Block b has the rows [b n/k, (b + 1) n/k) of n, of k blocks.
-PetscInt CoarseSolver::first_row(int block) const { return static_cast<PetscInt>(block * rows_ / solving_ranks_); }
-
-int CoarseSolver::block_of(std::int64_t row) const {
-  return static_cast<int>(((row + 1) * solving_ranks_ - 1) / rows_);
-}
-
-int CoarseSolver::rank_of_block(int block) const {
-  return static_cast<int>(static_cast<std::int64_t>(block) * ranks_of(comm_) / solving_ranks_);
-}
-
 PetscInt CoarseSolver::rows_here() const {
   if (!solves()) return 0;
   const int block = rank_of(solving_);
-  return first_row(block + 1) - first_row(block);
+  return static_cast<PetscInt>(blocks_.first_row(block + 1) - blocks_.first_row(block));
 }
 
 void CoarseSolver::choose_ranks(std::int64_t rows) {
-  rows_ = rows;
-  const std::int64_t worth = (rows + rows_per_rank_ - 1) / rows_per_rank_;
-  const auto ranks = static_cast<int>(std::clamp<std::int64_t>(worth, 1, ranks_of(comm_)));
-  if (ranks == solving_ranks_) return;
-  solving_ranks_ = ranks;
+  const int before = blocks_.count;
+  blocks_ = CoarseBlocks::of(rows, ranks_of(comm_), rows_per_rank_);
+  if (blocks_.count == before) return;
   matrix_.reset();
   solver_.reset();
   residual_.reset();
   solution_.reset();
   bool solves = false;
-  for (int block = 0; block < ranks; ++block) solves |= rank_of_block(block) == rank_of(comm_);
+  for (int block = 0; block < blocks_.count; ++block) solves |= blocks_.rank_of_block(block) == rank_of(comm_);
   solving_ = Communicator::of(comm_, solves);
 }
 
@@ -95,9 +82,9 @@ void CoarseSolver::connect(std::span<const PetscInt> row_of_node) {
   std::vector<PetscSFNode> root;
   for (std::size_t k = 0; k < row_of_node.size(); ++k) {
     if (row_of_node[k] < 0) continue;
-    const int block = block_of(row_of_node[k]);
+    const int block = blocks_.block_of(row_of_node[k]);
     leaf.push_back(static_cast<PetscInt>(k));
-    root.push_back({rank_of_block(block), row_of_node[k] - first_row(block)});
+    root.push_back({blocks_.rank_of_block(block), row_of_node[k] - static_cast<PetscInt>(blocks_.first_row(block))});
   }
   petsc_check(PetscSFCreate(comm_, nodes_.address()));
   petsc_check(PetscSFSetGraph(nodes_, rows_here(), static_cast<PetscInt>(leaf.size()), leaf.data(), PETSC_COPY_VALUES,
@@ -111,7 +98,7 @@ void CoarseSolver::build_matrix(const CoarseRows& rows, PetscInt first) {
   std::size_t next = 0;
   for (std::size_t k = 0; k < rows.length.size(); ++k) {
     const PetscInt row = first + static_cast<PetscInt>(k);
-    const int rank = rank_of_block(block_of(row));
+    const int rank = blocks_.rank_of_row(row);
     if (runs.empty() || runs.back().first != rank) runs.emplace_back(rank, 0);
     runs.back().second += static_cast<int>(rows.length[k]);
     for (std::int64_t entry = 0; entry < rows.length[k]; ++entry, ++next)
@@ -121,7 +108,7 @@ void CoarseSolver::build_matrix(const CoarseRows& rows, PetscInt first) {
   std::vector<Entry> entries(static_cast<std::size_t>(exchange.n_receive()));
   exchange.forward(own.data(), entries.data());
   matrix_.reset();
-  if (!solves() || rows_ == 0) return;
+  if (!solves() || blocks_.rows == 0) return;
 
   const PetscInt n = rows_here(), most = dim_ == 3 ? coarse_stencil<3> : coarse_stencil<2>;
   petsc_check(
